@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/findings.hpp"
+#include "delfront/grid_check.hpp"
+#include "delfront/mesh.hpp"
+#include "delfront/model.hpp"
+#include "delfront/options.hpp"
+#include "delfront/surface_check.hpp"
+
+namespace delfront {
+
+/// @brief What boundary recovery did (T2); "left" is what could not be undone, each with its place.
+struct RecoveryReport {
+  std::size_t missing_edges = 0, missing_faces = 0;  ///< of the Delaunay tetrahedrization of the surface's vertices
+  std::size_t steiner_points = 0;                    ///< put on surface edges on the way
+  std::size_t steiner_moved = 0;                     ///< moved into the volume again, so that the surface is unchanged
+  std::size_t steiner_left = 0;                      ///< still on the surface: its triangles there are subdivided
+  std::vector<Place> left;
+};
+
+/// @brief What refinement did (T3).
+struct RefineReport {
+  std::size_t points_inserted = 0;
+  std::size_t candidates = 0;  ///< proposed, before the filters
+  std::size_t rounds = 0;
+};
+
+/// @brief What improvement did (T5).
+struct ImproveReport {
+  std::size_t passes = 0;
+  std::size_t face_swaps = 0, edge_swaps = 0, points_moved = 0, points_removed = 0, points_added = 0;
+  double min_dihedral_before_deg = 0, min_dihedral_after_deg = 0;
+  std::size_t below_goal = 0;         ///< cells still under the goal …
+  std::size_t below_goal_forced = 0;  ///< … of these: all four vertices on the boundary
+};
+
+struct Report {
+  SurfaceReport surface;
+  RecoveryReport recovery;
+  RefineReport refine;
+  ImproveReport improve;
+  QualityReport quality;
+  std::vector<std::string> warnings;
+};
+
+struct Outcome {
+  Mesh mesh;
+  Report report;
+};
+
+/// @brief The whole run on one screen: a model to a tetrahedral grid whose boundary is the model's triangles.
+/// @throws InputError    the surface cannot bound a volume (places and reasons)
+/// @throws MeshingError  gridding failed after all recovery steps
+/// @throws LimitError, Cancelled
+/// @par Threads  the same grid for any number
+Outcome generate(Model model, const Options& options, Context& context);
+
+}  // namespace delfront

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/findings.hpp"
+#include "delfront/mesh.hpp"
+
+namespace delfront {
+
+struct WriteOptions {
+  bool binary = true;     ///< where the format has both
+  std::string version;    ///< MSH: "2.2" or "4.1" (default 4.1)
+  bool compress = false;  ///< VTK XML: zlib
+};
+
+/// @brief A file format: what it is called, how it is recognised, what it can do.
+struct FormatInfo {
+  std::string name;                     ///< "stl", "vtu", "msh", "medit", "su2", "openfoam", …
+  std::string title;                    ///< "STL (ASCII and binary)"
+  std::vector<std::string> extensions;  ///< lower case, with the dot; "/" for an OpenFOAM case
+  bool can_read = false, can_write = false;
+};
+
+/// @brief All formats, in the order they are listed to a user.
+const std::vector<FormatInfo>& formats();
+
+/// @brief Read a file; the type comes from the extension unless `format` names one.
+///
+/// STL and other facet files come as triangles (polygons kept) with one group of dimension 2 a solid or named group;
+/// points as they stand in the file, not welded (STL: three a facet).
+/// @throws InputError  missing, empty, truncated, malformed (what, where: line or byte, what to try)
+Mesh read_mesh(const std::string& path, Context& context, const std::string& format = "");
+
+/// @brief Write a file under a temporary name beside it, then rename it; a name ending in '/' is an OpenFOAM case.
+/// @return names that the format could not hold and how they were changed, as sentences
+/// @throws IoError     cannot write (the temporary file is removed)
+/// @throws InputError  the format cannot hold this mesh (what it lacks)
+std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, Context& context,
+                                    const WriteOptions& options = {}, const std::string& format = "");
+
+/// @brief Throws IoError now, not after an hour, where `path` cannot be written later. Leaves nothing behind.
+void check_writable(const std::string& path);
+
+/// @brief Findings as a VTP point cloud with their kind, severity and ids; errors' triangles too where `surface` has
+/// them.
+void write_defects(const std::vector<Finding>& findings, const std::string& path, const Mesh* surface,
+                   Context& context);
+
+}  // namespace delfront

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/ids.hpp"
+#include "delfront/mesh.hpp"
+#include "delfront/point.hpp"
+
+namespace delfront {
+
+/// @brief A named piece of the boundary (from a solid, group or object of the input).
+struct Patch {
+  std::string name;
+  std::string kind;  ///< "wall", "patch", "farfield", …; empty: not said
+};
+
+/// @brief A feature edge: a chain of surface vertices between corners, or closed.
+struct Curve {
+  std::string name;
+  std::vector<VertexId> vertices;
+};
+
+/// @brief A bounded component of space to be gridded.
+struct Region {
+  std::string name;
+};
+
+/// @brief What is to be gridded: corners, curves, patches, regions with names. Discrete now; CAD feeds the same shape.
+///
+/// `points` are the welded input vertices in input order (exact equality, -0 = +0, first occurrence wins);
+/// triangles keep the order of the input; n-gons are ear-clipped.
+struct Model {
+  Array<VertexId, Point> points;
+  Array<TriangleId, std::array<VertexId, 3>> triangles;
+  Array<TriangleId, PatchId> patch_of_triangle;
+  Array<TriangleId, std::uint32_t> input_face;  ///< which face of the input file(s) a triangle came from
+  Array<PatchId, Patch> patches;
+  Array<CurveId, Curve> curves;
+  std::vector<VertexId> corners;
+  Array<RegionId, Region> regions;
+  double feature_angle = 40;  ///< degrees, for curves and corners found by angle
+
+  Box bounding_box() const;
+};
+
+/// @brief One named input: a mesh as a reader gave it, and the stem used for unnamed patches.
+struct NamedMesh {
+  Mesh mesh;
+  std::string stem;
+};
+
+/// @brief Build a model from surface meshes: weld exactly, triangulate n-gons, name patches.
+///
+/// Nothing is mended and nothing dropped: degenerate and duplicate facets stay, for check_surface to name.
+/// @throws InputError  no faces at all; a coordinate that is not finite (places given)
+/// @par Cost  O(n log n)
+Model build_model(const std::vector<NamedMesh>& inputs, Context& context);
+
+}  // namespace delfront

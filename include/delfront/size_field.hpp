@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/point.hpp"
+
+namespace delfront {
+
+/// @brief Wanted size (and shape) of the cells in space; gridding asks for nothing else.
+///
+/// Thread-safe, deterministic. Points are best given in space-filling-curve order.
+class SizeField {
+ public:
+  virtual ~SizeField() = default;
+
+  /// @brief Wanted side length at each point, model units, > 0.
+  virtual void sizes(std::span<const Point> at, std::span<double> size) const = 0;
+
+  /// @brief Wanted metric at each point, as (xx, xy, xz, yy, yz, zz); M = sum (delta S_i)^-2 s_i s_i^T.
+  /// The default is isotropic: size^-2 times the identity.
+  virtual void metrics(std::span<const Point> at, std::span<std::array<double, 6>> metric) const;
+
+  /// @brief A guaranteed lower bound of the size over a box.
+  virtual double lower_bound(const Box& box) const = 0;
+
+  double size(Point at) const {
+    double result = 0;
+    sizes({&at, 1}, {&result, 1});
+    return result;
+  }
+};
+
+/// @brief Sizes from the boundary (S1), growing into the volume.
+///
+/// At distance s from a boundary point of size delta1 the size is at most max(delta1, (s (c - 1) + delta1) / c) with
+/// c = growth; the field is the minimum over all boundary points, clamped to [hmin, hmax].
+struct BoundarySizes {
+  std::vector<Point> points;
+  std::vector<double> size;  ///< one a point, > 0
+  double growth = 1.2;       ///< > 1
+  double hmin = 0;
+  double hmax = 1e300;
+};
+
+/// @par Cost    O(n log n) to build, O(log n) a point
+/// @par Source  Löhner (2008), eq. 3.16, 3.17
+std::unique_ptr<SizeField> build_boundary_size_field(const BoundarySizes& boundary, Context& context);
+
+}  // namespace delfront

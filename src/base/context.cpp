@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "delfront/context.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cfenv>
+#include <cstdio>
+#include <limits>
+
+namespace delfront {
+
+void fail_check(const char* condition, const char* file, int line) {
+  const std::string path = file;
+  const std::string name = path.substr(path.find_last_of('/') + 1);
+  throw InternalError(
+      fmt::format("internal error: '{}' does not hold ({}:{}); please report this with the input file and the command",
+                  condition, name, line));
+}
+
+void Context::check_limits() const {
+  if (cancel && cancel->load(std::memory_order_relaxed)) throw Cancelled();
+  if (time_limit > 0 && seconds_since_start() > time_limit)
+    throw LimitError(fmt::format("stopped: the time limit of {:g} s is reached; nothing was written", time_limit));
+  if (memory_limit > 0 && resident_memory() > memory_limit)
+    throw LimitError(fmt::format("stopped: the memory limit of {:.2f} GB is reached; nothing was written",
+                                 static_cast<double>(memory_limit) / 1e9));
+}
+
+void Context::check_cells(std::uint64_t cells) const {
+  if (max_cells > 0 && cells > max_cells)
+    throw LimitError(fmt::format(
+        "stopped: the grid passes the limit of {} cells; ask for larger sizes (--hmax, --growth) or a higher limit",
+        max_cells));
+}
+
+double Context::seconds_since_start() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+StageTimer::StageTimer(Context& context, std::string stage)
+    : context_(context), stage_(std::move(stage)), start_(std::chrono::steady_clock::now()) {}
+
+StageTimer::~StageTimer() {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  context_.stage_times.push_back({stage_, seconds});
+}
+
+void check_floating_point_mode() {
+  volatile double tiny = std::numeric_limits<double>::min();
+  const double half = tiny / 2;
+  if (std::fegetround() != FE_TONEAREST || half == 0)
+    throw InternalError(
+        "the floating-point mode was changed (rounding, or flush to zero, e.g. by -ffast-math in the calling "
+        "program); exact predicates need round-to-nearest and denormals");
+}
+
+std::uint64_t resident_memory() {
+  std::FILE* file = std::fopen("/proc/self/statm", "r");
+  if (!file) return 0;
+  unsigned long long total = 0, resident = 0;
+  const int read = std::fscanf(file, "%llu %llu", &total, &resident);
+  std::fclose(file);
+  return read == 2 ? resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+std::uint64_t peak_resident_memory() {
+  rusage usage{};
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<std::uint64_t>(usage.ru_maxrss) * 1024 : 0;
+}
+
+}  // namespace delfront
