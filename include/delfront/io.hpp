@@ -26,6 +26,10 @@ struct FormatInfo {
 /// @brief All formats, in the order they are listed to a user.
 const std::vector<FormatInfo>& formats();
 
+/// @brief The format that read_mesh (or, with `to_write`, write_mesh) takes for this path and `format`.
+/// @throws UsageError  unknown, or it cannot be read (written): lists those that can, with the nearest name
+const FormatInfo& format_of(const std::string& path, const std::string& format = "", bool to_write = false);
+
 /// @brief Read a file; the type comes from the extension unless `format` names one.
 ///
 /// STL and other facet files come as triangles (polygons kept) with one group of dimension 2 a solid or named group;

@@ -79,11 +79,14 @@ struct LimitOptions {
 
 struct OutputOptions {
   std::vector<std::string> files;
-  std::string format;   ///< overrides the extension
-  std::string units;    ///< "", or m mm in ft: rescale on output
-  std::string report;   ///< JSON
-  std::string defects;  ///< VTP
-  std::string require;  ///< gates
+  std::string format;       ///< overrides the extension
+  std::string units;        ///< "", or m mm in ft: rescale on output
+  std::string report;       ///< JSON
+  std::string defects;      ///< VTP
+  std::string require;      ///< gates
+  bool ascii = false;       ///< text instead of binary, where a format has both
+  bool compress = false;    ///< VTK XML: zlib
+  std::string msh_version;  ///< "", "2.2" or "4.1"
 };
 
 /// @brief The whole job: the job file's tree, field for field.
@@ -96,6 +99,7 @@ struct Options {
   ImproveOptions improve;
   LimitOptions limits;
   OutputOptions output;
+  std::string stop_after;  ///< last stage to run: "" all, geometry, surface, volume, improve, write
 };
 
 }  // namespace delfront

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -17,34 +17,85 @@ struct KernelCounts {
 /// @brief Inserts points one at a time into a TetComplex (Bowyer-Watson), exactly in every degenerate case.
 ///
 /// Constrained faces stop the cavity, which is then reduced until it is star-shaped: with constraints the complex stays
-/// valid, Delaunay where the constraints let it. Nothing is allocated per point once the work arrays have grown.
+/// valid, and Delaunay where the constraints let it. Nothing is allocated per point once the work arrays have grown.
 /// @par Source  Bowyer (1981), Watson (1981); perturbation: Devillers & Teillaud (2011)
 class DelaunayKernel {
  public:
   explicit DelaunayKernel(TetComplex& complex) : c_(complex) {}
 
-  enum class Insert : std::uint8_t { done, duplicate, outside, too_close, failed };
+  enum class Insert : std::uint8_t {
+    done,
+    duplicate,   ///< equals a vertex that is in already; see `duplicate_of`
+    outside,     ///< in a constrained complex: outside of the hull
+    too_close,   ///< a vertex of the cavity is nearer than asked
+    not_visible  ///< in a constrained complex: no star-shaped cavity, or one that would swallow a vertex
+  };
+
+  /// @brief What `insert` may do.
+  struct Limits {
+    double min_distance = 0;  ///< > 0: refuse where a vertex of the cavity is nearer than this
+    bool constrained = false;  ///< the complex is not Delaunay everywhere: make the cavity star-shaped, swallow nothing
+  };
 
   /// @brief Make the first tet and its ghosts from four vertices that are not coplanar.
   void start(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d);
 
-  /// @brief The tet that holds p (a ghost where p lies outside of the hull).
-  TetIndex locate(const ExactPoint& p, TetIndex hint);
+  /// @brief The tet that holds vertex v's place (a ghost where it lies outside of the hull), walking from `hint`.
+  TetIndex locate(VertexIndex v, TetIndex hint);
 
   /// @brief Insert vertex v, whose place stands in the complex already. `hint`: a live tet near it, or kNoIndex.
-  /// @param min_distance  > 0: refuse (too_close) where a vertex of the cavity is nearer than this
-  Insert insert(VertexIndex v, TetIndex hint, double min_distance = 0);
+  Insert insert(VertexIndex v, TetIndex hint, const Limits& limits);
+  Insert insert(VertexIndex v, TetIndex hint) { return insert(v, hint, Limits()); }
 
   KernelCounts counts;
   TetIndex last_tet = kNoIndex;  ///< a live tet made by the last insertion
+  VertexIndex duplicate_of = kNoIndex;
+  const std::vector<TetIndex>& made() const { return made_; }  ///< tets of the last insertion
 
  private:
+  struct CavityFace {
+    VertexIndex node[3];  ///< normal into the cavity
+    FaceRef outer;        ///< the same face from outside
+    TetIndex inner;       ///< the cavity's tet
+    std::uint16_t constrained;
+  };
+
+  template <class View>
+  TetIndex walk(const View& view, VertexIndex v, TetIndex hint);
+  template <class View>
+  Insert insert_with(const View& view, VertexIndex v, TetIndex hint, const Limits& limits);
+  template <class View>
+  bool in_conflict(const View& view, TetIndex t, VertexIndex v);
+  template <class View>
+  void grow_cavity(const View& view, TetIndex start, VertexIndex v, bool constrained);
+  void collect_cavity_faces();
+  template <class View>
+  bool make_star_shaped(const View& view, TetIndex start, VertexIndex v);
+  bool swallows_a_vertex();
+  bool is_too_close(VertexIndex v, double min_distance) const;
+  void fill_cavity(VertexIndex v);
+  void bond_new_tets();
+  void clear_marks();
+  std::uint32_t random();
+
   TetComplex& c_;
+  std::vector<TetIndex> cavity_, tested_, made_;
+  std::vector<CavityFace> faces_;
+  std::vector<std::uint32_t> slot_of_vertex_;  ///< by vertex + 1 (ghost: 0): a sparse set, never cleared
+  std::vector<VertexIndex> ball_vertices_;
+  std::vector<FaceRef> edge_table_;
+  std::vector<std::pair<std::uint64_t, FaceRef>> edge_list_;
+  std::uint32_t random_state_ = 12345;
 };
 
-/// @brief Delaunay tetrahedrization of the complex's vertices [first, last), BRIO + Hilbert order.
-/// @return for duplicates (equal coordinates): pairs (vertex, the one it equals) are left out and returned
-/// @throws InputError  fewer than four points, or all in one plane
+/// @brief Delaunay tetrahedrization of all the complex's vertices, in biased random insertion and Hilbert order.
+/// @return pairs (vertex, the earlier one it equals): such vertices are not in any tet
+/// @throws InputError  fewer than four distinct points, or all in one plane
+/// @par Source  insertion order: Amenta, Choi & Rote (2003)
 std::vector<std::pair<VertexIndex, VertexIndex>> build_delaunay(TetComplex& complex, Context& context);
+
+/// @brief The same over a kernel of the caller's, to read its counts or go on inserting.
+std::vector<std::pair<VertexIndex, VertexIndex>> build_delaunay(TetComplex& complex, DelaunayKernel& kernel,
+                                                                Context& context);
 
 }  // namespace delfront

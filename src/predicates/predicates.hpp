@@ -4,6 +4,10 @@
 
 namespace delfront {
 
+/// @brief Error of ExactPoint::approx on an axis, relative to the larger |coordinate| of the segment's ends: half a
+/// unit in the last place for the last rounding, as much again for everything of second order (and underflow aside).
+inline constexpr double kSegmentPointError = 0x1p-52;
+
 /// @brief A point given exactly: itself, or a + t (b - a) on a segment, evaluated without rounding.
 ///
 /// `approx` is the coordinates for an explicit point; for a segment point it is the nearest double (each coordinate
@@ -14,13 +18,15 @@ struct ExactPoint {
   double t = -1;  ///< in (0, 1) for a segment point, negative for an explicit one
 
   static ExactPoint explicit_point(Point p) { return {p, {}, {}, -1}; }
+  /// @brief a + t (b - a); the end itself, explicit, where t <= 0 or t >= 1.
   static ExactPoint on_segment(Point a, Point b, double t);
   bool is_explicit() const { return t < 0; }
 };
 
-// Every predicate returns the exact sign (-1, 0, +1) of its determinant. Three layers: semi-static filter, adaptive
-// stages, exact expansions. Coordinates must be finite, |x| <= 2^100 and either 0 or >= 2^-140 in magnitude differences
-// (the caller scales the model by a power of two so that the largest coordinate is about 1).
+// Every predicate returns the exact sign (-1, 0, +1) of its determinant: an inline semi-static filter first, then exact
+// integers of the least width that holds the differences (one 64-bit limb in nearly every degenerate case in practice).
+// Coordinates must be finite and |x| <= 2^100; there is no smallest allowed difference. The filter is at its best where
+// the largest coordinate is about 1 (the caller scales the model by a power of two).
 
 /// @brief Sign of det[b - a, c - a] in the plane (x, y): +1 where a, b, c turn anticlockwise.
 int orient2d(const double* a, const double* b, const double* c);
@@ -63,3 +69,5 @@ Crossing classify_triangles(const Point p[3], const unsigned p_id[3], const Poin
                             Point* where);
 
 }  // namespace delfront
+
+#include "predicates/predicates_inline.hpp"

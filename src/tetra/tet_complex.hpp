@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -26,6 +27,12 @@ inline constexpr std::uint8_t kFaceNodes[4][3] = {{1, 3, 2}, {0, 2, 3}, {0, 3, 1
 /// @brief The six edges of a tet, as node pairs; edge e and edge 5 - e are opposite.
 inline constexpr std::uint8_t kEdgeNodes[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
+/// @brief For local nodes (i, j) of a tet: the other two (k, l) such that (i, j, k, l) is an even permutation.
+inline constexpr std::uint8_t kOtherNodes[4][4][2] = {{{0, 0}, {2, 3}, {3, 1}, {1, 2}},
+                                                      {{3, 2}, {0, 0}, {0, 3}, {2, 0}},
+                                                      {{1, 3}, {3, 0}, {0, 0}, {0, 1}},
+                                                      {{2, 1}, {0, 2}, {1, 0}, {0, 0}}};
+
 /// @brief A vertex: coordinates and wanted size in one aligned load.
 struct alignas(32) TetVertex {
   double x, y, z;
@@ -46,14 +53,15 @@ class TetComplex {
     dead = 1 << 5,
     visited = 1 << 6,  ///< scratch
     fresh = 1 << 7,    ///< made since the last round (refinement, improvement)
+    in_scan = 1 << 8,  ///< scratch of star, find_edge, find_face and replace alone
   };
 
   std::vector<TetVertex> vertex;
-  std::vector<std::uint32_t> node;        ///< 4 a tet
-  std::vector<FaceRef> neigh;             ///< 4 a tet
-  std::vector<std::uint16_t> flag;        ///< 1 a tet
-  std::vector<std::uint32_t> region;      ///< 1 a tet: the colour of its region; kOutside for what is not gridded
-  std::vector<TetIndex> vertex_tet;       ///< one live tet of each vertex, or kNoIndex
+  std::vector<std::uint32_t> node;          ///< 4 a tet
+  std::vector<FaceRef> neigh;               ///< 4 a tet
+  mutable std::vector<std::uint16_t> flag;  ///< 1 a tet; mutable: const searches mark with in_scan and clear it
+  std::vector<std::uint32_t> region;        ///< 1 a tet: the colour of its region; kOutside for what is not gridded
+  std::vector<TetIndex> vertex_tet;         ///< one live tet of each vertex, or kNoIndex
   std::vector<std::uint8_t> on_boundary;  ///< 1 a vertex: 1 where it is a vertex of the given boundary and may not move
   /// Steiner points on boundary segments, held exactly until boundary recovery ends; empty afterwards.
   std::unordered_map<VertexIndex, ExactPoint> segment_points;
@@ -114,8 +122,9 @@ class TetComplex {
 
   /// @brief All live tets around v (ghosts included), by breadth-first search from vertex_tet[v].
   void star(VertexIndex v, std::vector<TetIndex>& out) const;
-  /// @brief The ring of tets around edge (a, b) of tet t, in rotation order; open where a dead end is met never
-  /// happens: ghosts close every ring. Crosses constrained faces.
+  /// @brief The ring of tets around edge (a, b) of tet t, in rotation order, t first. Tet i is (a, b, p_i, p_i+1) in
+  /// positive order, so that its face (a, b, p_i+1) is common with tet i + 1. Ghosts close every ring. Crosses
+  /// constrained faces.
   void edge_ring(TetIndex t, VertexIndex a, VertexIndex b, std::vector<TetIndex>& out) const;
   /// @return a tet with both vertices, or kNoIndex
   TetIndex find_edge(VertexIndex a, VertexIndex b, std::vector<TetIndex>& scratch) const;
@@ -137,7 +146,19 @@ class TetComplex {
   std::string find_defect() const;
 
  private:
+  /// A face that waits for its other side, in replace().
+  struct OpenFace {
+    std::array<VertexIndex, 3> key;  ///< sorted
+    FaceRef ref;                     ///< kNoIndex once matched
+    bool constrained;
+  };
+  void match_face(FaceRef ref, bool constrained);
+  void collect_hole(const std::vector<TetIndex>& old_tets);
+
   std::vector<TetIndex> free_;
+  std::vector<OpenFace> open_faces_;       ///< scratch of replace()
+  std::vector<std::uint32_t> face_table_;  ///< scratch of replace(): hash table of indices into open_faces_
+  std::size_t num_open_ = 0;
 };
 
 }  // namespace delfront

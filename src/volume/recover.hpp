@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <vector>
 
 #include "delfront/context.hpp"
 #include "delfront/generate.hpp"
 #include "delfront/model.hpp"
+#include "delfront/options.hpp"
 #include "tetra/tet_complex.hpp"
 
 namespace delfront {
 
 /// @brief A tetrahedrization whose faces include every given triangle, vertex for vertex, with regions coloured (T2).
 ///
-/// @return the complex: vertices 0 … n-1 are the model's points, in order; every triangle of the model is a face
-/// flagged constrained (or, where report.left says so, a union of such faces); tets outside every kept region are
-/// kOutside
+/// Vertices 0 … n-1 are the model's points, in order, with the mean length of their edges as size. Every triangle of the
+/// model that bounds a kept region is a face flagged constrained (where report.left says so: a union of such faces).
+/// Only tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border.
+/// @param[in] is_far_field  one a patch of the model
 /// @pre check_surface(model) finds no error
-/// @throws MeshingError with the places
-TetComplex tetrahedralize_boundary(const Model& model, RecoveryReport& report, Context& context);
+/// @throws MeshingError with the places; InputError where no region is kept
+/// @par Source  Si & Gärtner (2005), Diazzi et al. (2023), George et al. (2003)
+TetComplex tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
+                                   const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context);
 
 }  // namespace delfront

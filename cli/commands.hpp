@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/findings.hpp"
+#include "delfront/grid_check.hpp"
+#include "delfront/mesh.hpp"
+#include "terminal.hpp"
+
+namespace delfront::cli {
+
+/// @brief Flags that every command has.
+struct CommonFlags {
+  bool is_verbose = false, is_quiet = false;
+  std::string progress = "auto";
+  int threads = 0;  ///< 0: all that the machine has
+};
+
+/// @brief One command: its flags, and what it does. `run` returns the exit code or throws delfront::Error.
+class Command {
+ public:
+  Command() = default;
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
+  virtual ~Command() = default;
+  virtual int run(const std::string& command_line) = 0;
+
+  CLI::App* app = nullptr;
+
+ protected:
+  void add_common_flags();
+  Terminal make_terminal() const;
+  /// @brief A context that shows its progress on `terminal` and stops on Ctrl-C.
+  void prepare(Context& context, Terminal& terminal) const;
+
+  CommonFlags common_;
+};
+
+std::unique_ptr<Command> make_mesh_command(CLI::App& app);
+std::unique_ptr<Command> make_check_command(CLI::App& app);
+std::unique_ptr<Command> make_info_command(CLI::App& app);
+std::unique_ptr<Command> make_convert_command(CLI::App& app);
+
+/// @return names of the formats that can be read (or written), one a line with their extensions
+std::string format_list();
+
+/// @brief Findings as a table: severity, count, what, first places, what to try.
+void print_findings(const std::vector<Finding>& findings, std::size_t places_shown = 3);
+/// @brief Quality as a table: min, mean, max of each measure; with the worst cells and their places.
+void print_quality(const QualityReport& report, std::size_t worst_shown);
+/// @brief Counts by cell type, groups by dimension, box.
+void print_mesh_facts(const Mesh& mesh);
+/// @return "1,234,567"
+std::string with_commas(std::size_t value);
+
+/// @brief Text to a file, or to stdout for "-". @throws IoError
+void write_json(const std::string& path, const std::string& text);
+
+}  // namespace delfront::cli

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// delfront check and delfront info: look at a surface or a grid and say what it is.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/io.hpp"
+#include "delfront/model.hpp"
+#include "delfront/surface_check.hpp"
+#include "pipeline/boundaries.hpp"
+#include "pipeline/report_json.hpp"
+
+namespace delfront::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* yes_no(bool value) { return value ? "yes" : "no"; }
+
+/// What both commands do first: a file becomes a surface with its report, or a grid with its findings.
+struct Inspected {
+  Mesh mesh;
+  bool is_grid = false;
+  SurfaceReport surface;
+  std::vector<Finding> findings;  ///< of the surface, or of the grid
+  QualityReport quality;          ///< of a valid grid
+  bool is_usable() const { return is_grid ? !has_errors(findings) : surface.can_bound_volume; }
+};
+
+Inspected inspect(const std::string& path, const std::string& format, Context& context) {
+  Inspected result;
+  result.mesh = read_mesh(path, context, format);
+  if (result.mesh.top_dimension() < 2)
+    throw InputError(fmt::format("{} has neither faces nor volume cells; there is nothing to look at", path));
+  result.is_grid = result.mesh.top_dimension() == 3;
+  if (result.is_grid) {
+    result.findings = check(result.mesh);
+    if (!has_errors(result.findings)) result.quality = measure_quality(result.mesh, context);
+    return result;
+  }
+  const Model model = build_model({{result.mesh, std::filesystem::path(path).stem().string()}}, context);
+  result.surface = check_surface(model, context);
+  result.findings = result.surface.findings;
+  result.mesh = surface_mesh(model);  // ids of places are those of the welded, triangulated surface
+  return result;
+}
+
+void print_surface_facts(const SurfaceReport& r) {
+  fmt::print("closed         {}; manifold {}; oriented {}; can bound a volume {}\n", yes_no(r.is_closed),
+             yes_no(r.is_manifold), yes_no(r.is_oriented), yes_no(r.can_bound_volume));
+  fmt::print("area           {:.9g}\n", r.area);
+  if (r.is_closed) fmt::print("volume         {:.9g}\n", r.volume);
+  fmt::print("edges          {:.4g} to {:.4g}, mean {:.4g}\n", r.min_edge, r.max_edge, r.mean_edge);
+  fmt::print("angles         of triangles from {:.3g} deg; between neighbours from {:.3g} deg\n", r.min_angle_deg,
+             r.min_dihedral_deg);
+  if (!r.likely_unit.empty()) fmt::print("unit           probably {}\n", r.likely_unit);
+  constexpr std::size_t kShown = 20;
+  for (std::size_t i = 0; i < std::min(kShown, r.components.size()); ++i) {
+    const SurfaceComponent& c = r.components[i];
+    fmt::print("component {:<4} {} triangles, {}{}\n", i, with_commas(c.num_triangles),
+               c.is_closed ? fmt::format("closed, volume {:.6g}", c.signed_volume) : "open",
+               c.inside_of >= 0 ? fmt::format(", inside component {}", c.inside_of) : "");
+  }
+  if (r.components.size() > kShown) fmt::print("               and {} more components\n", r.components.size() - kShown);
+}
+
+Json facts_json(const std::string& path, const Inspected& it) {
+  Json groups = Json::array();
+  for (const Group& g : it.mesh.groups)
+    groups.push_back({{"name", g.name}, {"dimension", g.dimension}, {"kind", g.kind}});
+  Json cells = Json::object();
+  for (const CellBlock& block : it.mesh.blocks) cells[name_of(block.type)] = block.size();
+  Json json = {
+      {"file", path},   {"is_grid", it.is_grid}, {"is_usable", it.is_usable()}, {"num_points", it.mesh.points.size()},
+      {"cells", cells}, {"groups", groups}};
+  if (it.is_grid) {
+    json["findings"] = to_json(it.findings);
+    json["quality"] = to_json(it.quality);
+  } else {
+    json["surface"] = to_json(it.surface);
+  }
+  return json;
+}
+
+std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+class CheckCommand : public Command {
+ public:
+  explicit CheckCommand(CLI::App& parent) {
+    app = parent.add_subcommand("check", "Every defect of a surface or a grid, with its place; quality of a grid");
+    app->allow_extras();
+    app->footer(
+        "Exit code: 0 usable, 3 not (a surface that cannot bound a volume, an invalid grid), 5 a gate not met.\n"
+        "Examples:\n"
+        "  delfront check body.stl --defects defects.vtp\n"
+        "  delfront check body.vtu --require \"min_dihedral > 8, max_nonortho < 70\" --json body.json");
+    app->add_option("FILE", file_, "surface or grid")->required();
+    app->add_option("--require", require_, "gates for a grid: \"min_dihedral > 8, max_nonortho < 70\"")
+        ->type_name("GATES");
+    app->add_option("--defects", defects_, "write all places to this file (.vtp)")->type_name("FILE");
+    app->add_option("--json", json_, "write the findings as JSON; - for stdout")->type_name("FILE");
+    app->add_option("--format", format_, "file type, instead of by extension")->type_name("FORMAT");
+    add_common_flags();
+  }
+
+  int run(const std::string&) override {
+    Terminal terminal = make_terminal();
+    Context context;
+    prepare(context, terminal);
+    for (const std::string& path : {defects_, json_})
+      if (!path.empty() && path != "-") check_writable(path);
+    const Inspected it = inspect(file_, format_, context);
+    const bool is_valid_grid = it.is_grid && it.is_usable();
+    const std::vector<std::string> failed =
+        is_valid_grid ? failed_gates(it.quality, require_) : std::vector<std::string>();
+    terminal.clear_bar();
+    if (!it.is_grid && !require_.empty())
+      terminal.log(LogLevel::warning, "--require is for grids; " + file_ + " is a surface");
+    if (terminal.verbosity() >= 0 && json_ != "-") print(it);
+    if (!defects_.empty()) write_defects(it.findings, defects_, &it.mesh, context);
+    if (!json_.empty()) {
+      Json json = facts_json(file_, it);
+      json["failed_gates"] = failed;
+      write_json(json_, dump(json));
+    }
+    if (!it.is_usable()) {
+      terminal.error(ExitCode::bad_input, verdict(it), {});
+      return static_cast<int>(ExitCode::bad_input);
+    }
+    for (const std::string& gate : failed) terminal.error(ExitCode::gate_not_met, "gate not met: " + gate, {});
+    return static_cast<int>(failed.empty() ? ExitCode::done : ExitCode::gate_not_met);
+  }
+
+ private:
+  std::string verdict(const Inspected& it) const {
+    const char* what = it.is_grid ? "is not a valid grid" : "cannot bound a volume as it is";
+    const std::string hint =
+        defects_.empty() ? "; --defects FILE.vtp shows all places" : "; all places are in " + defects_;
+    return fmt::format("{} {}{}", file_, what, hint);
+  }
+
+  static void print(const Inspected& it) {
+    if (it.is_grid)
+      print_mesh_facts(it.mesh);
+    else
+      print_surface_facts(it.surface);
+    if (it.findings.empty()) fmt::print("findings       none\n");
+    print_findings(it.findings);
+    if (it.is_grid && it.is_usable()) print_quality(it.quality, 3);
+  }
+
+  std::string file_, require_, defects_, json_, format_;
+};
+
+class InfoCommand : public Command {
+ public:
+  explicit InfoCommand(CLI::App& parent) {
+    app = parent.add_subcommand("info", "Facts about a file: size, patches, units, closed or not");
+    app->allow_extras();
+    app->footer(
+        "Exit code: 0, or 3 where it cannot be gridded as it is (then: delfront check FILE).\n"
+        "Example:\n  delfront info body.stl --json body.json");
+    app->add_option("FILE", file_, "surface or grid")->required();
+    app->add_option("--json", json_, "write the facts as JSON; - for stdout")->type_name("FILE");
+    app->add_option("--format", format_, "file type, instead of by extension")->type_name("FORMAT");
+    add_common_flags();
+  }
+
+  int run(const std::string&) override {
+    Terminal terminal = make_terminal();
+    Context context;
+    prepare(context, terminal);
+    const Inspected it = inspect(file_, format_, context);
+    terminal.clear_bar();
+    if (terminal.verbosity() >= 0 && json_ != "-") print(it);
+    if (!json_.empty()) write_json(json_, dump(facts_json(file_, it)));
+    if (it.is_usable()) return static_cast<int>(ExitCode::done);
+    terminal.error(ExitCode::bad_input, fmt::format("{} cannot be used as it is; 'delfront check' shows where", file_),
+                   {});
+    return static_cast<int>(ExitCode::bad_input);
+  }
+
+ private:
+  void print(const Inspected& it) const {
+    fmt::print("file           {}\n", file_);
+    print_mesh_facts(it.mesh);
+    if (!it.is_grid) print_surface_facts(it.surface);
+    if (it.is_grid && it.is_usable()) fmt::print("volume         {:.9g}\n", it.quality.volume);
+    for (const Finding& f : it.findings) fmt::print("{:<14} {}: {}\n", severity_name(f.severity), f.kind, f.message);
+  }
+
+  std::string file_, json_, format_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_check_command(CLI::App& app) { return std::make_unique<CheckCommand>(app); }
+std::unique_ptr<Command> make_info_command(CLI::App& app) { return std::make_unique<InfoCommand>(app); }
+
+}  // namespace delfront::cli

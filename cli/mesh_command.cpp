@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// delfront mesh: options from a job file, flags and --set become Options; run_job does the work.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "commands.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/job.hpp"
+#include "pipeline/option_table.hpp"
+
+namespace delfront::cli {
+
+namespace {
+
+const char* const kExamples =
+    "Examples:\n"
+    "  delfront mesh body.stl -o body.vtu                  the inside, at the surface's own resolution\n"
+    "  delfront mesh body.stl -o body.vtu --growth 1.3     cells grow away from the surface\n"
+    "  delfront mesh car.stl -o case/ --farfield box:10c   the outside, as an OpenFOAM case\n"
+    "  delfront mesh case.toml -o wing.su2 -o wing.vtu --set size.hmax=0.5 --report wing.json\n"
+    "  delfront mesh case.toml --print-config              the whole configuration, to start a job file from\n"
+    "\n"
+    "LENGTH: 0.5 (model units), 5% (of the bounding box's diagonal), 20c (longest sides), 2mm, 1in, ...";
+
+bool is_job_file(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".toml" || extension == ".json";
+}
+
+class MeshCommand : public Command {
+ public:
+  explicit MeshCommand(CLI::App& parent) {
+    app = parent.add_subcommand("mesh", "Grid what a surface bounds (FILE: surfaces, or one job file)");
+    app->allow_extras();
+    app->footer(kExamples);
+    app->add_option("FILE", files_, "surface files, gridded together; or a job file (.toml, .json)");
+    for (const OptionRow& row : option_table())
+      if (!row.flags.empty()) add_row_flag(row);
+    for (const Shorthand& shorthand : shorthand_table()) add_shorthand(shorthand);
+    app->add_option("--set", sets_, "any option by its key: --set size.hmax=5%; wins over everything else")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->take_all()
+        ->group("Job");
+    app->add_flag("--print-config", print_config_, "print the whole effective configuration as TOML and stop")
+        ->group("Job");
+    add_common_flags();
+  }
+
+  int run(const std::string& command_line) override {
+    const Options options = effective_options();
+    if (print_config_) {
+      fmt::print("{}", print_config(options));
+      return 0;
+    }
+    Terminal terminal = make_terminal();
+    Context context;
+    prepare(context, terminal);
+    const JobResult result = run_job(options, context, command_line);
+    terminal.clear_bar();
+    if (!result.error.empty()) show_failure(result, terminal);
+    if (result.exit_code == ExitCode::done || result.exit_code == ExitCode::gate_not_met)
+      if (terminal.verbosity() >= 0) print_summary(result, options);
+    return static_cast<int>(result.exit_code);
+  }
+
+ private:
+  void add_row_flag(const OptionRow& row) {
+    app->add_option(row.flags, typed_[row.key], row.help)
+        ->type_name(row.metavar)
+        ->expected(1)
+        ->take_all()
+        ->group(group_of(row.key));
+  }
+
+  void add_shorthand(const Shorthand& shorthand) {
+    if (shorthand.takes_value)
+      app->add_option(shorthand.flags, shorthands_[shorthand.flags], shorthand.help)
+          ->type_name(shorthand.metavar)
+          ->expected(1)
+          ->take_all()
+          ->group("Domain");
+    else
+      app->add_flag(shorthand.flags, shorthand_flags_[shorthand.flags], shorthand.help)
+          ->group(shorthand.flags == "--ascii" ? "Output" : "Sizes");
+  }
+
+  static std::string group_of(const std::string& key) {
+    const std::string table = key.substr(0, key.find('.'));
+    static const std::map<std::string, std::string> groups = {{"input", "Input"},   {"domain", "Domain"},
+                                                              {"size", "Sizes"},    {"limits", "Limits"},
+                                                              {"output", "Output"}, {"stop_after", "Job"}};
+    const auto it = groups.find(table);
+    return it == groups.end() ? "Job" : it->second;
+  }
+
+  /// Job file, then flags, then --set: the later wins.
+  Options effective_options() const {
+    Options options;
+    std::vector<std::string> surfaces;
+    bool has_job = false;
+    for (const std::string& file : files_) {
+      if (!is_job_file(file)) {
+        surfaces.push_back(file);
+        continue;
+      }
+      if (has_job) throw UsageError(fmt::format("'{}': one job file at a time", file));
+      has_job = true;
+      read_job_file(file, options);
+    }
+    if (!surfaces.empty()) options.input.files = surfaces;
+    for (const OptionRow& row : option_table()) apply_flag(row, options);
+    for (const Shorthand& shorthand : shorthand_table()) apply_shorthand(shorthand, options);
+    for (const std::string& set : sets_) {
+      const std::size_t equals = set.find('=');
+      if (equals == std::string::npos)
+        throw UsageError(fmt::format("--set {}: expected KEY=VALUE, e.g. --set size.hmax=5%", set));
+      try {
+        set_option(options, set.substr(0, equals), set.substr(equals + 1));
+      } catch (const UsageError& e) {
+        throw UsageError(fmt::format("--set {}: {}", set, e.what()));
+      }
+    }
+    return options;
+  }
+
+  void apply_flag(const OptionRow& row, Options& options) const {
+    const auto it = typed_.find(row.key);
+    if (it == typed_.end() || it->second.empty()) return;
+    JobValue value;
+    if (row.takes == Takes::texts) {
+      value = JobValue::list();
+      for (const std::string& text : it->second) value.items.push_back(JobValue::of(text));
+    } else {
+      value = value_from_text(row.takes, it->second.back());
+    }
+    apply_value(options, row.key, value, [&row](int) { return row.flags.substr(0, row.flags.find(',')) + ": "; });
+  }
+
+  void apply_shorthand(const Shorthand& shorthand, Options& options) const {
+    if (const auto it = shorthands_.find(shorthand.flags); it != shorthands_.end() && !it->second.empty())
+      shorthand.apply(options, it->second.back());
+    if (const auto it = shorthand_flags_.find(shorthand.flags); it != shorthand_flags_.end() && it->second)
+      shorthand.apply(options, "");
+  }
+
+  static void show_failure(const JobResult& result, Terminal& terminal) {
+    terminal.error(result.exit_code, result.error, result.places);
+    if (terminal.verbosity() >= 0 && result.exit_code == ExitCode::bad_input)
+      for (const Finding& f : result.report.surface.findings)
+        if (f.severity == Severity::error) {
+          const std::string remedy = f.remedy.empty() ? "" : "; try: " + f.remedy;
+          terminal.log(LogLevel::warning, fmt::format("{}: {}{}", f.kind, f.message, remedy));
+        }
+    if (!result.defects_file.empty())
+      terminal.log(LogLevel::warning, fmt::format("every place is in {} (ParaView opens it)", result.defects_file));
+  }
+
+  /// Stages that ran more than once, added up.
+  static std::vector<StageTime> summed(const std::vector<StageTime>& times) {
+    std::vector<StageTime> result;
+    for (const StageTime& time : times) {
+      const auto it =
+          std::find_if(result.begin(), result.end(), [&](const StageTime& t) { return t.stage == time.stage; });
+      if (it == result.end())
+        result.push_back(time);
+      else
+        it->seconds += time.seconds;
+    }
+    return result;
+  }
+
+  static std::vector<std::string> surface_warnings(const JobResult& result) {
+    std::vector<std::string> warnings;
+    for (const Finding& f : result.report.surface.findings)
+      if (f.severity == Severity::warning) warnings.push_back(fmt::format("{}: {}", f.kind, f.message));
+    return warnings;
+  }
+
+  static void print_summary(const JobResult& result, const Options& options) {
+    print_mesh_facts(result.mesh);
+    const QualityReport& quality = result.report.quality;
+    if (quality.num_cells) print_quality(quality, 0);
+    const RecoveryReport& recovery = result.report.recovery;
+    if (recovery.steiner_left)
+      fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);
+    for (const std::string& change : result.name_changes) fmt::print("name           {}\n", change);
+    for (const std::string& warning : surface_warnings(result)) fmt::print("warning        {}\n", warning);
+    std::string times;
+    for (const StageTime& stage : summed(result.stage_times))
+      times += fmt::format("{} {:.2f} s, ", stage.stage, stage.seconds);
+    fmt::print("time           {}in all {:.2f} s; peak memory {:.0f} MB", times, result.seconds,
+               static_cast<double>(result.peak_memory) / 1e6);
+    if (quality.num_cells) fmt::print(" ({} bytes a cell)", result.peak_memory / quality.num_cells);
+    fmt::print("\n");
+    if (!result.files_written.empty()) fmt::print("written        {}\n", fmt::join(result.files_written, ", "));
+    if (!options.output.report.empty()) fmt::print("report         {}\n", options.output.report);
+    if (!result.defects_file.empty()) fmt::print("defects        {}\n", result.defects_file);
+  }
+
+  std::vector<std::string> files_, sets_;
+  std::map<std::string, std::vector<std::string>> typed_, shorthands_;
+  std::map<std::string, bool> shorthand_flags_;
+  bool print_config_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_mesh_command(CLI::App& app) { return std::make_unique<MeshCommand>(app); }
+
+}  // namespace delfront::cli

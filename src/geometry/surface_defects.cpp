@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// What makes a surface no PLC: facets without area, doubled, crossing, overlapping or touching outside of common
+// corners and edges. Everything is decided by exact predicates.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "geometry/surface_findings.hpp"
+#include "predicates/predicates.hpp"
+#include "spatial/bvh.hpp"
+
+namespace delfront {
+namespace {
+
+struct Pair {
+  std::uint32_t first, second;
+  Point where;
+};
+
+void append_pairs(const Surface& surface, std::vector<Pair>& pairs, const char* kind, const char* what,
+                  const char* remedy, std::vector<Finding>& findings) {
+  if (pairs.empty()) return;
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& a, const Pair& b) { return a.first != b.first ? a.first < b.first : a.second < b.second; });
+  Finding finding{kind, Severity::error, pairs.size(), "", remedy, {}};
+  for (const Pair& pair : pairs) {
+    if (finding.places.size() >= kMaxPlaces) break;
+    add_place(finding, pair.where / surface.scale, {face_id(surface, pair.first), face_id(surface, pair.second)});
+  }
+  const Place& first = finding.places[0];
+  finding.message = fmt::format("{} {}, the first are facets {} and {} at {}",
+                                count_of(pairs.size(), "pair of facets", "pairs of facets"), what, first.ids[0],
+                                first.ids[1], text_of(first.at));
+  findings.push_back(std::move(finding));
+}
+
+}  // namespace
+
+std::string text_of(Point p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z); }
+
+std::string count_of(std::size_t count, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+void add_place(Finding& finding, Point at, std::vector<std::uint32_t> ids) {
+  if (finding.places.size() < kMaxPlaces) finding.places.push_back({at, std::move(ids)});
+}
+
+void find_bad_triangles(const Surface& surface, std::vector<Finding>& findings) {
+  Finding flat{"degenerate_triangles", Severity::error, 0, "", "remove them where the surface was made", {}};
+  Finding twins{"duplicate_triangles", Severity::error, 0, "", "keep one facet of each set", {}};
+  for (std::size_t t = 0; t < surface.num_triangles(); ++t) {
+    if (surface.is_degenerate[t]) {
+      ++flat.count;
+      add_place(flat, surface.centroid(t), {face_id(surface, t)});
+    } else if (!surface.is_first(t)) {
+      ++twins.count;
+      add_place(twins, surface.centroid(t), {face_id(surface, surface.twin[t]), face_id(surface, t)});
+    }
+  }
+  if (flat.count > 0) {
+    const Place& first = flat.places[0];
+    flat.message = fmt::format("{} no area, the first is facet {} at {}",
+                               count_of(flat.count, "triangle has", "triangles have"), first.ids[0], text_of(first.at));
+    findings.push_back(std::move(flat));
+  }
+  if (twins.count > 0) {
+    const Place& first = twins.places[0];
+    twins.message = fmt::format("{} an earlier one, the first is facet {}, a copy of facet {} at {}",
+                                count_of(twins.count, "triangle repeats", "triangles repeat"), first.ids[1],
+                                first.ids[0], text_of(first.at));
+    findings.push_back(std::move(twins));
+  }
+}
+
+void find_intersections(const Surface& surface, std::vector<Finding>& findings, Context& context) {
+  std::vector<Box> boxes(surface.num_triangles());
+  for (std::size_t t = 0; t < boxes.size(); ++t)
+    if (surface.is_sound(t)) boxes[t] = surface.box(t);
+  std::vector<Pair> crossing, overlapping, touching;
+  std::uint64_t num_pairs = 0;
+  Bvh(boxes).for_each_pair([&](std::uint32_t i, std::uint32_t j) {
+    if (++num_pairs % 65536 == 0) context.progress("check", num_pairs, 0, "pairs of facets");
+    Point p[3], q[3], where;
+    unsigned p_id[3], q_id[3];
+    for (int k = 0; k < 3; ++k) {
+      p[k] = surface.corner(i, k);
+      q[k] = surface.corner(j, k);
+      p_id[k] = surface.corners(i)[std::size_t(k)].value;
+      q_id[k] = surface.corners(j)[std::size_t(k)].value;
+    }
+    switch (classify_triangles(p, p_id, q, q_id, &where)) {
+      case Crossing::none:
+        return;
+      case Crossing::crosses:
+        crossing.push_back({i, j, where});
+        return;
+      case Crossing::overlaps:
+        overlapping.push_back({i, j, where});
+        return;
+      case Crossing::touches:
+        touching.push_back({i, j, where});
+        return;
+    }
+  });
+  append_pairs(surface, crossing, "self_intersection", crossing.size() == 1 ? "crosses" : "cross",
+               "cut the parts at each other (a boolean union) in the CAD tool", findings);
+  append_pairs(surface, overlapping, "overlapping_triangles",
+               overlapping.size() == 1 ? "overlaps in one plane" : "overlap in one plane",
+               "unite the parts, or remove the doubled faces, in the CAD tool", findings);
+  append_pairs(surface, touching, "t_junctions",
+               touching.size() == 1 ? "touches outside of common corners and edges"
+                                    : "touch outside of common corners and edges",
+               "split the facets where vertices of others lie on them, so that neighbours share whole edges", findings);
+}
+
+}  // namespace delfront

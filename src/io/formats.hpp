@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/io.hpp"
+#include "delfront/mesh.hpp"
+
+namespace delfront {
+
+class Output;
+
+// Every reader takes the bytes of a whole file; `path` is for messages only. Memory stays proportional to the bytes,
+// whatever counts they claim. All throw InputError (what, line or byte, what to try) and check the context's limits.
+// Every writer writes the whole file to `out` and adds a sentence to `notes` for each thing the format cannot hold.
+// To add a format: its own read_<format>.cpp / write_<format>.cpp, two lines here and one in registry.cpp.
+
+using Reader = Mesh (*)(std::string_view bytes, const std::string& path, Context& context);
+using Writer = void (*)(const Mesh& mesh, Output& out, const WriteOptions& options, Context& context,
+                        std::vector<std::string>& notes);
+
+Mesh read_stl(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_obj(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_ply(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_off(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_poly(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_vtu(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_vtp(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_msh(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_medit(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_su2(std::string_view bytes, const std::string& path, Context& context);
+
+void write_stl(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_obj(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_ply(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_off(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_vtu(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_vtp(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_msh(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_medit(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_su2(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+
+/// @brief Write an OpenFOAM case: `folder`/constant/polyMesh, and a minimal system/ where the case has none.
+void write_openfoam(const Mesh& mesh, const std::string& folder, Context& context, std::vector<std::string>& notes);
+
+}  // namespace delfront

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/names.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "io/cells.hpp"
+#include "io/cursor.hpp"
+
+namespace delfront {
+
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+char fit_character(char c, NameRule rule) {
+  const auto code = static_cast<unsigned char>(c);
+  if (code < 32 || code == 127) return rule == NameRule::foam_word || rule == NameRule::word ? '_' : ' ';
+  switch (rule) {
+    case NameRule::line:
+      return c;
+    case NameRule::quoted:
+      return c == '"' ? '\'' : c;
+    case NameRule::word:
+      return std::string_view(" %=,;()\"'{}").find(c) == std::string_view::npos ? c : '_';
+    case NameRule::foam_word:
+      return is_letter(c) || is_digit(c) || c == '_' || c == '-' || c == '.' ? c : '_';
+  }
+  return c;
+}
+
+std::string fit_name(const std::string& name, NameRule rule, const char* role) {
+  std::string fitted(trimmed(name));
+  for (char& c : fitted) c = fit_character(c, rule);
+  fitted = std::string(trimmed(fitted));
+  if (fitted.empty()) return role;
+  if (rule == NameRule::foam_word && !is_letter(fitted[0]) && fitted[0] != '_')
+    fitted = fmt::format("{}_{}", role, fitted);
+  return fitted;
+}
+
+}  // namespace
+
+std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* format,
+                                   std::vector<std::string>& notes) {
+  std::vector<std::string> fitted(mesh.groups.size());
+  std::vector<bool> is_settled(mesh.groups.size(), false);
+  std::set<std::pair<int, std::string>> taken;
+  // Names that fit as they are keep it, whatever comes before them.
+  for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
+    const Group& group = mesh.groups[GroupId(i)];
+    fitted[i] = fit_name(group.name, rule, role_name(mesh, group.dimension));
+    if (fitted[i] == group.name) is_settled[i] = taken.insert({group.dimension, fitted[i]}).second;
+  }
+  for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
+    if (is_settled[i]) continue;
+    const Group& group = mesh.groups[GroupId(i)];
+    const std::string base = fitted[i];
+    for (int number = 2; !taken.insert({group.dimension, fitted[i]}).second; ++number)
+      fitted[i] = fmt::format("{}_{}", base, number);
+    const char* role = role_name(mesh, group.dimension);
+    notes.push_back(group.name.empty()
+                        ? fmt::format("{}: an unnamed {} is written as \"{}\"", format, role, fitted[i])
+                        : fmt::format("{}: {} \"{}\" is written as \"{}\"", format, role, group.name, fitted[i]));
+  }
+  return fitted;
+}
+
+}  // namespace delfront

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delfront/mesh.hpp"
+
+namespace delfront {
+
+/// @brief What a format lets a name contain.
+enum class NameRule {
+  line,      ///< no control characters, not empty (VTK XML, PLY, STL, OBJ, medit comments)
+  quoted,    ///< as line, and no double quotes (MSH)
+  word,      ///< as line, and no blanks nor any of %=,;()"'{} (SU2)
+  foam_word  ///< letters, digits, '_', '-', '.', beginning with a letter or '_' (OpenFOAM)
+};
+
+/// @brief The name of each group as the format holds it, unique among those of one dimension (numbered _2, _3, …).
+///
+/// Empty names become "patch", "region", "curve" or "point".
+/// @param[in,out] notes  a sentence for each name that changed
+std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* format,
+                                   std::vector<std::string>& notes);
+
+}  // namespace delfront

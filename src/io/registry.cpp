@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one table of formats, and the public entries that look into it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/nearest_name.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/io.hpp"
+#include "io/formats.hpp"
+#include "io/output.hpp"
+#include "io/source.hpp"
+
+namespace delfront {
+
+namespace {
+
+struct Format {
+  const char* name;
+  const char* title;
+  std::vector<std::string> extensions;
+  Reader read;   // null: cannot
+  Writer write;  // null: cannot, or a folder
+};
+
+constexpr const char* kFolderFormat = "openfoam";
+
+const std::vector<Format>& table() {
+  static const std::vector<Format> kTable = {
+      {"stl", "STL (ASCII and binary)", {".stl", ".stla", ".stlb"}, read_stl, write_stl},
+      {"obj", "Wavefront OBJ", {".obj"}, read_obj, write_obj},
+      {"ply", "PLY (ASCII and binary)", {".ply"}, read_ply, write_ply},
+      {"off", "OFF", {".off"}, read_off, write_off},
+      {"poly", "TetGen facets", {".poly"}, read_poly, nullptr},
+      {"vtu", "VTK XML unstructured grid", {".vtu"}, read_vtu, write_vtu},
+      {"vtp", "VTK XML surface", {".vtp"}, read_vtp, write_vtp},
+      {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_msh, write_msh},
+      {"medit", "Medit, MMG", {".mesh"}, read_medit, write_medit},
+      {"su2", "SU2", {".su2"}, read_su2, write_su2},
+      {kFolderFormat, "OpenFOAM polyMesh in a case folder", {"/"}, nullptr, nullptr},
+  };
+  return kTable;
+}
+
+bool can_write(const Format& format) { return format.write || std::string_view(format.name) == kFolderFormat; }
+
+std::string extension_of(const std::string& path) {
+  if (path.ends_with('/')) return "/";
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension;
+}
+
+/// ".stl .obj …" of the formats that can be read, or written.
+std::vector<std::string> known_extensions(bool to_write) {
+  std::vector<std::string> known;
+  for (const Format& format : table())
+    if (to_write ? can_write(format) : format.read != nullptr)
+      known.insert(known.end(), format.extensions.begin(), format.extensions.end());
+  return known;
+}
+
+std::string hint(const std::string& wrong, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(wrong, known);
+  return nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest);
+}
+
+const Format& find_format(const std::string& path, const std::string& name, bool to_write) {
+  const char* doing = to_write ? "written" : "read";
+  for (const Format& format : table()) {
+    const std::string extension = extension_of(path);
+    const bool is_it = name.empty() ? std::find(format.extensions.begin(), format.extensions.end(), extension) !=
+                                          format.extensions.end()
+                                    : name == format.name;
+    if (!is_it) continue;
+    if (to_write ? can_write(format) : format.read != nullptr) return format;
+    throw UsageError(fmt::format("{}: {} cannot be {}; these can: {}", path, format.title, doing,
+                                 fmt::join(known_extensions(to_write), " ")));
+  }
+  if (!name.empty()) {
+    std::vector<std::string> names;
+    for (const Format& format : table()) names.push_back(format.name);
+    throw UsageError(fmt::format("unknown format '{}': {}formats are {}", name, hint(name, names), fmt::join(names, " ")));
+  }
+  const std::vector<std::string> known = known_extensions(to_write);
+  const std::string extension = extension_of(path);
+  throw UsageError(fmt::format(
+      "{}: {}; {}types that can be {}: {}{} (or name one with --format)", path,
+      extension.empty() ? "the name has no extension that says its type" : fmt::format("unknown type '{}'", extension),
+      hint(extension, known), doing, fmt::join(known, " "), to_write ? " (a name ending in / is an OpenFOAM case)" : ""));
+}
+
+}  // namespace
+
+const std::vector<FormatInfo>& formats() {
+  static const std::vector<FormatInfo> kFormats = [] {
+    std::vector<FormatInfo> all;
+    for (const Format& format : table())
+      all.push_back({format.name, format.title, format.extensions, format.read != nullptr, can_write(format)});
+    return all;
+  }();
+  return kFormats;
+}
+
+const FormatInfo& format_of(const std::string& path, const std::string& format, bool to_write) {
+  const Format& found = find_format(path, format, to_write);
+  return formats()[static_cast<std::size_t>(&found - table().data())];
+}
+
+Mesh read_mesh(const std::string& path, Context& context, const std::string& format) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw InputError(fmt::format("cannot read {}: it is a folder, not a file", path));
+  const Format& found = find_format(path, format, false);
+  const FileBytes bytes(path);
+  context.check_limits();
+  return found.read(bytes.view(), path, context);
+}
+
+std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, Context& context,
+                                    const WriteOptions& options, const std::string& format) {
+  const Format& found = find_format(path, format, true);
+  std::vector<std::string> notes;
+  if (!found.write) {
+    write_openfoam(mesh, path, context, notes);
+    return notes;
+  }
+  Replacement replacement(path);
+  Output out(replacement.temporary(), path);
+  found.write(mesh, out, options, context, notes);
+  out.close();
+  replacement.commit();
+  return notes;
+}
+
+void check_writable(const std::string& path) {
+  if (extension_of(path) == "/")
+    check_folder_place(path);
+  else
+    check_file_place(path);
+}
+
+}  // namespace delfront

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace delfront {
+
+/// @brief An element of the small part of XML that VTK files use: attributes, children, text. Views into the bytes.
+struct XmlElement {
+  std::string_view name;
+  std::vector<std::pair<std::string_view, std::string>> attributes;  ///< values with entities resolved
+  std::vector<XmlElement> children;
+  std::string_view text;  ///< between the tags, up to the first child
+
+  /// @return the attribute's value, or nullptr
+  const std::string* find(std::string_view attribute) const;
+  /// @return "" where it is not there
+  std::string get(std::string_view attribute) const;
+  const XmlElement* child(std::string_view wanted) const;
+};
+
+/// @brief Parse a document up to its end or to <AppendedData>, whose raw bytes are no XML.
+///
+/// The element AppendedData, if any, is the root's last child; its `text` begins after the '_' that marks the data
+/// and goes to the end of the file.
+/// @throws InputError  not well formed (line), nested over 64 deep
+XmlElement parse_xml(std::string_view bytes, const std::string& path);
+
+/// @brief &, <, >, " and control characters of an attribute's value as entities.
+std::string escape_xml(std::string_view text);
+
+}  // namespace delfront

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "delfront/grid_check.hpp"
+
+namespace delfront {
+
+/// @brief What a measure is called and how it is shown; the histogram's ends also take what lies beyond them.
+struct MeasureKind {
+  const char* name;
+  const char* unit;
+  bool worst_is_low;
+  double histogram_low, histogram_high;
+  std::size_t bins;
+};
+
+/// @brief Every measure there is, in the order in which they are reported.
+enum class MeasureId : std::uint8_t {
+  min_dihedral,
+  max_dihedral,
+  min_angle,
+  max_angle,
+  mean_ratio,
+  radius_ratio,
+  aspect_ratio,
+  openfoam_aspect,
+  max_nonortho,
+  skewness,
+  volume_ratio,
+  edge_length,
+};
+inline constexpr std::size_t kNumMeasures = 12;
+const MeasureKind& kind_of(MeasureId id);
+
+/// @brief Takes the values of one measure one by one; keeps sums, histogram and the worst ten (earlier ones win ties).
+class MeasureBuilder {
+ public:
+  explicit MeasureBuilder(MeasureId id);
+  /// @brief Other ends for the histogram, before the first value.
+  void set_range(double low, double high);
+  /// @param id0, id1  of the cell, or of the two cells or points
+  void add(double value, std::uint32_t id0, std::uint32_t id1 = kNoId);
+  bool is_empty() const { return count_ == 0; }
+  /// @brief The measure; `at` of the worst is left for the caller to fill in.
+  Measure take();
+
+  static constexpr std::uint32_t kNoId = 0xffffffffu;
+
+ private:
+  struct Worst {
+    double value;
+    std::uint32_t id0, id1;
+  };
+  void keep_worst(double value, std::uint32_t id0, std::uint32_t id1);
+
+  Measure measure_;
+  std::size_t count_ = 0;
+  double sum_ = 0, bin_scale_ = 0;
+  std::vector<Worst> worst_;
+};
+
+}  // namespace delfront

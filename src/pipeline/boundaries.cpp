@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/boundaries.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "delfront/errors.hpp"
+#include "pipeline/option_table.hpp"
+
+namespace delfront {
+
+bool matches_pattern(const std::string& name, const std::string& pattern) {
+  // Greedy with one place to come back to: the last star, which then takes one character more.
+  std::size_t n = 0, p = 0, star = std::string::npos, star_takes_to = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      star_takes_to = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (star != std::string::npos) {
+      p = star + 1;
+      n = ++star_takes_to;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+static std::vector<std::string> patch_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Patch& patch : model.patches) names.push_back(patch.name);
+  return names;
+}
+
+void apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model) {
+  if (boundaries.empty()) return;
+  constexpr std::size_t kKept = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> boundary_of(model.patches.size(), kKept);
+  for (std::size_t b = 0; b < boundaries.size(); ++b) {
+    const std::string& pattern = boundaries[b].select.empty() ? boundaries[b].name : boundaries[b].select;
+    bool found = false;
+    for (std::size_t i = 0; i < model.patches.size(); ++i)
+      if (matches_pattern(model.patches[PatchId(i)].name, pattern)) {
+        boundary_of[i] = b;
+        found = true;
+      }
+    const std::vector<std::string> names = patch_names(model);
+    if (!found)
+      throw UsageError(fmt::format("boundaries.{}: no patch is called '{}'{}; the input has: {}", boundaries[b].name,
+                                   pattern, did_you_mean(pattern, names), fmt::join(names, ", ")));
+  }
+  Array<PatchId, Patch> patches;
+  std::vector<PatchId> patch_of_boundary(boundaries.size());
+  std::vector<PatchId> new_patch(model.patches.size());
+  for (std::size_t i = 0; i < model.patches.size(); ++i) {
+    const Patch& old = model.patches[PatchId(i)];
+    const std::size_t b = boundary_of[i];
+    if (b == kKept) {
+      new_patch[i] = patches.next_id();
+      patches.push_back(old);
+      continue;
+    }
+    if (!patch_of_boundary[b].is_valid()) {
+      patch_of_boundary[b] = patches.next_id();
+      patches.push_back({boundaries[b].name, boundaries[b].kind.empty() ? old.kind : boundaries[b].kind});
+    }
+    new_patch[i] = patch_of_boundary[b];
+  }
+  for (PatchId& patch : model.patch_of_triangle) patch = new_patch[patch.index()];
+  model.patches = std::move(patches);
+}
+
+Mesh surface_mesh(const Model& model) {
+  Mesh mesh;
+  mesh.points = model.points;
+  for (const Patch& patch : model.patches) mesh.groups.push_back({patch.name, 2, patch.kind, false});
+  CellBlock& block = mesh.block(CellType::triangle);
+  block.vertices.reserve(3 * model.triangles.size());
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    for (const VertexId v : model.triangles[TriangleId(t)]) block.vertices.push_back(v);
+    block.group.push_back(GroupId(model.patch_of_triangle[TriangleId(t)].index()));
+  }
+  return mesh;
+}
+
+}  // namespace delfront

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delfront/model.hpp"
+#include "delfront/options.hpp"
+
+namespace delfront {
+
+/// @brief Does a name match a pattern with * (any text) and ? (any one character)?
+bool matches_pattern(const std::string& name, const std::string& pattern);
+
+/// @brief Give the model's patches the names and kinds that [boundaries.NAME] asks for.
+///
+/// Patches that one boundary selects become one patch of its name; patches that nobody selects stay. Where two
+/// boundaries select the same patch, the later one in the job file gets it.
+/// @throws UsageError  a selector that matches no patch (the names there are)
+void apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model);
+
+/// @brief The model as a surface mesh: its points, its triangles in order, its patches as groups.
+Mesh surface_mesh(const Model& model);
+
+}  // namespace delfront

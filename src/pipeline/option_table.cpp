@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: Apache-2.0
+// The option table itself, one row an option; what is done with it stands in option_tree.cpp.
+#include "pipeline/option_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "delfront/errors.hpp"
+#include "pipeline/quantities.hpp"
+
+namespace delfront {
+
+namespace {
+
+const char* const kLengthAllowed =
+    "a length: a number in model units, or a text such as \"5%\" (of the bounding box's diagonal), \"20c\" (longest "
+    "sides), \"2 mm\"";
+
+std::string as_text(const JobValue& value) {
+  if (!value.is(JobValue::Kind::text)) throw BadValue("got " + describe(value));
+  return value.text;
+}
+
+double as_number(const JobValue& value) {
+  if (!value.is_number() || !std::isfinite(value.number)) throw BadValue("got " + describe(value));
+  return value.number;
+}
+
+double as_number_between(const JobValue& value, double low, double high) {
+  const double number = as_number(value);
+  if (number < low || number > high) throw BadValue("got " + describe(value));
+  return number;
+}
+
+std::uint64_t as_count(const JobValue& value) {
+  const double number = as_number_between(value, 0, 1e18);
+  if (number != std::floor(number)) throw BadValue("got " + describe(value));
+  return value.is(JobValue::Kind::integer) ? static_cast<std::uint64_t>(value.integer)
+                                           : static_cast<std::uint64_t>(number);
+}
+
+Length as_length(const JobValue& value) {
+  const Length length = value.is_number() ? Length{as_number(value), ""} : parse_length(as_text(value));
+  if (length.value <= 0) throw BadValue(fmt::format("got {}, which is not positive", describe(value)));
+  return length;
+}
+
+JobValue length_value(const Length& length) {
+  return length.unit.empty() ? JobValue::of(length.value) : JobValue::of(to_text(length));
+}
+
+/// Numbers of a list, or of "1,2,3".
+std::vector<double> as_numbers(const JobValue& value) {
+  std::vector<double> result;
+  if (value.is(JobValue::Kind::list)) {
+    for (const JobValue& item : value.items) result.push_back(as_number(item));
+    return result;
+  }
+  const std::string text = as_text(value);
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    result.push_back(parse_number(text.substr(begin, end - begin), "number"));
+    begin = end + 1;
+  }
+  return result;
+}
+
+Point as_point(const JobValue& value) {
+  const std::vector<double> x = as_numbers(value);
+  if (x.size() != 3) throw BadValue(fmt::format("a point has three coordinates, got {}", x.size()));
+  return {x[0], x[1], x[2]};
+}
+
+// --- rows of the common types; `at` gives the field of (const or not) Options -----------------------------------
+
+template <class At>
+OptionRow text_row(const char* key, const char* flags, const char* metavar, const char* help, At at,
+                   std::vector<std::string> choices = {}) {
+  OptionRow row{key, Takes::text, flags, metavar, help, "a text", {}, {}};
+  if (!choices.empty()) row.allowed = fmt::format("one of {}", fmt::join(choices, ", "));
+  row.set = [at, choices](Options& o, const JobValue& v) {
+    const std::string text = as_text(v);
+    if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end())
+      throw BadValue("got " + describe(v) + did_you_mean(text, choices));
+    at(o) = text;
+  };
+  row.get = [at](const Options& o) { return at(o).empty() ? JobValue() : JobValue::of(at(o)); };
+  return row;
+}
+
+template <class At>
+OptionRow texts_row(const char* key, const char* flags, const char* metavar, const char* help, At at) {
+  OptionRow row{key, Takes::texts, flags, metavar, help, "a list of texts", {}, {}};
+  row.set = [at](Options& o, const JobValue& v) {
+    std::vector<std::string> texts;
+    if (v.is(JobValue::Kind::text)) {
+      texts.push_back(v.text);
+    } else {
+      if (!v.is(JobValue::Kind::list)) throw BadValue("got " + describe(v));
+      for (const JobValue& item : v.items) texts.push_back(as_text(item));
+    }
+    for (const std::string& text : texts)
+      if (text.empty()) throw BadValue("got an empty text");
+    at(o) = std::move(texts);
+  };
+  row.get = [at](const Options& o) {
+    JobValue list = JobValue::list();
+    for (const std::string& text : at(o)) list.items.push_back(JobValue::of(text));
+    return list;
+  };
+  return row;
+}
+
+template <class At>
+OptionRow length_row(const char* key, const char* flags, const char* help, At at) {
+  OptionRow row{key, Takes::length, flags, "LENGTH", help, kLengthAllowed, {}, {}};
+  row.set = [at](Options& o, const JobValue& v) { at(o) = as_length(v); };
+  row.get = [at](const Options& o) {
+    const std::optional<Length> length = at(o);
+    return length ? length_value(*length) : JobValue();
+  };
+  return row;
+}
+
+template <class At>
+OptionRow number_row(const char* key, const char* flags, const char* metavar, const char* help, const char* allowed,
+                     double low, double high, At at) {
+  OptionRow row{key, Takes::number, flags, metavar, help, allowed, {}, {}};
+  row.set = [=](Options& o, const JobValue& v) { at(o) = as_number_between(v, low, high); };
+  row.get = [at](const Options& o) {
+    const std::optional<double> number = at(o);
+    return number ? JobValue::of(*number) : JobValue();
+  };
+  return row;
+}
+
+template <class At>
+OptionRow boolean_row(const char* key, const char* help, At at) {
+  OptionRow row{key, Takes::boolean, "", "", help, "true or false", {}, {}};
+  row.set = [at](Options& o, const JobValue& v) {
+    if (!v.is(JobValue::Kind::boolean)) throw BadValue("got " + describe(v));
+    at(o) = v.boolean;
+  };
+  row.get = [at](const Options& o) { return JobValue::of(bool(at(o))); };
+  return row;
+}
+
+template <class At>
+OptionRow count_row(const char* key, const char* flags, const char* help, const char* allowed, At at) {
+  OptionRow row{key, Takes::count, flags, "N", help, allowed, {}, {}};
+  row.set = [at](Options& o, const JobValue& v) {
+    using Value = std::remove_reference_t<decltype(at(o))>;
+    const std::uint64_t count = as_count(v);
+    if (count > static_cast<std::uint64_t>(std::numeric_limits<Value>::max())) throw BadValue("got " + describe(v));
+    at(o) = static_cast<Value>(count);
+  };
+  row.get = [at](const Options& o) { return JobValue::of(static_cast<std::int64_t>(at(o))); };
+  return row;
+}
+
+// --- rows that are one of a kind -----------------------------------------------------------------------------
+
+OptionRow corners_row() {
+  OptionRow row{"domain.enclose.corners",
+                Takes::numbers,
+                "",
+                "",
+                "a box given by its corners: [xmin, ymin, zmin, xmax, ymax, zmax]",
+                "six numbers, each minimum below its maximum",
+                {},
+                {}};
+  row.set = [](Options& o, const JobValue& v) {
+    const std::vector<double> x = as_numbers(v);
+    if (x.size() != 6) throw BadValue(fmt::format("got {} numbers", x.size()));
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!(x[k] < x[k + 3])) throw BadValue(fmt::format("got {} to {} along {}", x[k], x[k + 3], "xyz"[k]));
+    o.domain.enclose.corners = {x[0], x[1], x[2], x[3], x[4], x[5]};
+  };
+  row.get = [](const Options& o) {
+    if (!o.domain.enclose.corners) return JobValue();
+    JobValue list = JobValue::list();
+    for (const double x : *o.domain.enclose.corners) list.items.push_back(JobValue::of(x));
+    return list;
+  };
+  return row;
+}
+
+OptionRow enclose_size_row() {
+  OptionRow row{"domain.enclose.size",
+                Takes::length,
+                "",
+                "LENGTH",
+                "sphere: its radius; box: half its side",
+                kLengthAllowed,
+                [](Options& o, const JobValue& v) { o.domain.enclose.size = as_length(v); },
+                [](const Options& o) {
+                  return o.domain.enclose.size.value > 0 ? length_value(o.domain.enclose.size) : JobValue();
+                }};
+  return row;
+}
+
+void set_keep(Options& options, const JobValue& value) {
+  DomainOptions& domain = options.domain;
+  static const std::vector<std::string> words = {"largest", "all", "outside"};
+  if (value.is(JobValue::Kind::text) && std::find(words.begin(), words.end(), value.text) != words.end()) {
+    domain.keep = value.text;
+    domain.keep_points.clear();
+    return;
+  }
+  std::vector<Point> points;
+  if (value.is(JobValue::Kind::text)) {
+    if (value.text.find(',') == std::string::npos)
+      throw BadValue("got " + describe(value) + did_you_mean(value.text, words));
+    points.push_back(as_point(value));
+  } else {
+    if (value.find("seeds")) throw BadValue("named seeds are" + planned_note("domain.keep.seeds").substr(1));
+    const JobValue* point = value.is(JobValue::Kind::table) && value.items.size() == 1 ? value.find("point") : nullptr;
+    if (!point || !point->is(JobValue::Kind::list)) throw BadValue("got " + describe(value));
+    const bool is_many = !point->items.empty() && point->items[0].is(JobValue::Kind::list);
+    if (is_many)
+      for (const JobValue& item : point->items) points.push_back(as_point(item));
+    else
+      points.push_back(as_point(*point));
+  }
+  domain.keep.clear();
+  domain.keep_points = std::move(points);
+}
+
+JobValue get_keep(const Options& options) {
+  if (!options.domain.keep.empty()) return JobValue::of(options.domain.keep);
+  if (options.domain.keep_points.empty()) return {};
+  std::vector<JobValue> points;
+  for (const Point p : options.domain.keep_points)
+    points.push_back(JobValue::list({JobValue::of(p.x), JobValue::of(p.y), JobValue::of(p.z)}));
+  JobValue table = JobValue::table();
+  table.add("point", points.size() == 1 ? points[0] : JobValue::list(points));
+  return table;
+}
+
+OptionRow keep_row() {
+  return {"domain.keep",
+          Takes::keep,
+          "--keep",
+          "largest|all|outside|X,Y,Z",
+          "which regions to grid: the largest, all bounded ones, what is outside the body (the default with a far "
+          "field), or the one that holds a point",
+          "largest, all, outside, or { point = [x, y, z] }",
+          set_keep,
+          get_keep};
+}
+
+OptionRow duration_row() {
+  return {"limits.time",
+          Takes::duration,
+          "--time-limit",
+          "TIME",
+          "stop after this time (exit 6); 0: no limit",
+          "seconds, or a text such as \"90s\", \"10min\", \"2h\"",
+          [](Options& o, const JobValue& v) {
+            o.limits.time = v.is_number() ? as_number_between(v, 0, 1e18) : parse_duration(as_text(v));
+          },
+          [](const Options& o) { return JobValue::of(o.limits.time); }};
+}
+
+OptionRow memory_row() {
+  return {
+      "limits.memory",
+      Takes::memory,
+      "--memory-limit",
+      "MEMORY",
+      "stop where the process holds more memory (exit 6); 0: no limit",
+      "bytes, or a text such as \"500MB\", \"20GB\", \"16GiB\"",
+      [](Options& o, const JobValue& v) { o.limits.memory = v.is_number() ? as_count(v) : parse_memory(as_text(v)); },
+      [](const Options& o) { return JobValue::of(static_cast<std::int64_t>(o.limits.memory)); }};
+}
+
+/// The option `growth` alone may be absent, so it is a row of its own kind.
+OptionRow growth_row() {
+  return number_row(
+      "size.growth", "--growth", "RATIO",
+      "ratio of neighbouring sizes; given: cells grow without other bound than hmax; absent: 1.2, and no "
+      "cell larger than the largest boundary edge",
+      "a number over 1, at most 10", 1 + 1e-9, 10, [](auto& o) -> auto& { return o.size.growth; });
+}
+
+const std::vector<std::string> kUnits = {"m", "mm", "in", "ft"};
+const std::vector<std::string> kStages = {"geometry", "surface", "volume", "improve", "write"};
+
+std::vector<OptionRow> build_table() {
+  std::vector<std::string> input_units = kUnits;
+  input_units.insert(input_units.begin(), "auto");
+  std::vector<OptionRow> t;
+  const auto add = [&t](OptionRow row) { t.push_back(std::move(row)); };
+  add(text_row(
+      "stop_after", "--stop-after", "STAGE",
+      "last stage to run: geometry (look only), surface (write the boundary), volume (no improvement), "
+      "improve (write nothing), write",
+      [](auto& o) -> auto& { return o.stop_after; }, kStages));
+  add(texts_row(
+      "input.files", "", "", "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …",
+      [](auto& o) -> auto& { return o.input.files; }));
+  add(text_row(
+      "input.units", "--units", "UNIT", "unit of the coordinates, where lengths in m, mm, in, ft are used",
+      [](auto& o) -> auto& { return o.input.units; }, input_units));
+  add(number_row(
+      "input.feature_angle", "--feature-angle", "DEG", "angle between facets from which an edge is a feature",
+      "degrees from 0 to 180", 0, 180, [](auto& o) -> auto& { return o.input.feature_angle; }));
+  add(keep_row());
+  add(text_row("domain.enclose.shape", "", "", "outer boundary made around the input, for external flow",
+               [](auto& o) -> auto& { return o.domain.enclose.shape; }, {"none", "box", "sphere"}));
+  add(enclose_size_row());
+  add(corners_row());
+  add(text_row(
+      "domain.enclose.name", "", "", "its patch", [](auto& o) -> auto& { return o.domain.enclose.name; }));
+  add(length_row(
+      "domain.enclose.h", "--farfield-h", "side of the far field's triangles; by default from its size",
+      [](auto& o) -> auto& { return o.domain.enclose.h; }));
+  add(length_row(
+      "size.hmin", "--hmin,--clmin", "no cell side asked for below this",
+      [](auto& o) -> auto& { return o.size.hmin; }));
+  add(length_row(
+      "size.hmax", "--hmax,--clmax", "no cell side asked for above this",
+      [](auto& o) -> auto& { return o.size.hmax; }));
+  add(growth_row());
+  add(text_row("volume.method", "", "", "how the volume is gridded; none: the surface only",
+               [](auto& o) -> auto& { return o.volume.method; }, {"delaunay", "none"}));
+  add(boolean_row(
+      "improve.enabled", "switch faces and edges and move points until the goals are met",
+      [](auto& o) -> auto& { return o.improve.enabled; }));
+  add(count_row(
+      "improve.max_passes", "", "passes at most", "a whole number",
+      [](auto& o) -> auto& { return o.improve.max_passes; }));
+  add(number_row(
+      "improve.goals.min_dihedral", "", "", "worst dihedral angle to work towards", "degrees from 0 to 70", 0, 70,
+      [](auto& o) -> auto& { return o.improve.min_dihedral; }));
+  add(number_row(
+      "improve.goals.max_nonortho", "", "", "worst non-orthogonality to work towards", "degrees from 0 to 90", 0, 90,
+      [](auto& o) -> auto& { return o.improve.max_nonortho; }));
+  add(duration_row());
+  add(memory_row());
+  add(count_row(
+      "limits.max_cells", "--max-cells", "stop where the grid passes this many cells (exit 6); 0: no limit",
+      "a whole number", [](auto& o) -> auto& { return o.limits.max_cells; }));
+  add(texts_row(
+      "output.files", "-o,--output", "OUT",
+      "grid to write, repeatable; the type comes from the extension, a name ending in / is an OpenFOAM case",
+      [](auto& o) -> auto& { return o.output.files; }));
+  add(text_row(
+      "output.format", "--format", "FORMAT", "file type of all outputs, instead of by extension",
+      [](auto& o) -> auto& { return o.output.format; }));
+  add(text_row(
+      "output.units", "--output-units", "UNIT", "rescale on output (needs input.units)",
+      [](auto& o) -> auto& { return o.output.units; }, kUnits));
+  add(boolean_row(
+      "output.ascii", "text instead of binary, where a format has both",
+      [](auto& o) -> auto& { return o.output.ascii; }));
+  add(boolean_row(
+      "output.compress", "VTU and VTP: compressed", [](auto& o) -> auto& { return o.output.compress; }));
+  add(text_row("output.msh_version", "--msh-version", "V", "version of MSH files; by default 4.1",
+               [](auto& o) -> auto& { return o.output.msh_version; }, {"2.2", "4.1"}));
+  add(text_row(
+      "output.report", "--report", "FILE", "report of the run as JSON, written also when the run fails",
+      [](auto& o) -> auto& { return o.output.report; }));
+  add(text_row(
+      "output.defects", "--defects", "FILE", "where defects are shown (.vtp); by default beside the first output",
+      [](auto& o) -> auto& { return o.output.defects; }));
+  add(text_row(
+      "output.require", "--require", "GATES",
+      "quality the grid must have, or exit 5: \"min_dihedral > 8, max_nonortho < 70\"",
+      [](auto& o) -> auto& { return o.output.require; }));
+  return t;
+}
+
+}  // namespace
+
+const std::vector<OptionRow>& option_table() {
+  static const std::vector<OptionRow> table = build_table();
+  return table;
+}
+
+const std::vector<BoundaryRow>& boundary_table() {
+  static const std::vector<std::string> kinds = {"wall",     "patch", "inlet", "outlet", "farfield",
+                                                 "symmetry", "empty", "wedge", "cyclic", "interface"};
+  static const std::vector<BoundaryRow> table = {
+      {"select", Takes::select, "which patches it is made of, by name with * and ?; by default the one of its own name",
+       "a name, or { name = \"wing*\" }",
+       [](BoundaryOptions& b, const JobValue& v) {
+         const JobValue* name = v.is(JobValue::Kind::table) && v.items.size() == 1 ? v.find("name") : nullptr;
+         if (v.is(JobValue::Kind::table) && !name)
+           throw BadValue("selecting by anything but name is" + planned_note("boundaries.*.select.id").substr(1));
+         b.select = as_text(name ? *name : v);
+       },
+       [](const BoundaryOptions& b) {
+         if (b.select.empty()) return JobValue();
+         JobValue value = JobValue::table();
+         value.add("name", JobValue::of(b.select));
+         return value;
+       }},
+      {"kind", Takes::text, "what kind of boundary it is", fmt::format("one of {}", fmt::join(kinds, ", ")),
+       [](BoundaryOptions& b, const JobValue& v) {
+         if (std::find(kinds.begin(), kinds.end(), as_text(v)) == kinds.end())
+           throw BadValue("got " + describe(v) + did_you_mean(v.text, kinds));
+         b.kind = v.text;
+       },
+       [](const BoundaryOptions& b) { return b.kind.empty() ? JobValue() : JobValue::of(b.kind); }}};
+  return table;
+}
+
+/// "sphere:20c", "box:10c", "box:xmin,ymin,zmin,xmax,ymax,zmax", "none".
+static void set_farfield(Options& options, const std::string& text) {
+  EncloseOptions& enclose = options.domain.enclose;
+  const std::size_t colon = text.find(':');
+  const std::string shape = text.substr(0, colon);
+  const std::string size = colon == std::string::npos ? "" : text.substr(colon + 1);
+  const auto bad = [&](const std::string& why) {
+    return UsageError(
+        fmt::format("--farfield {}: {}; write sphere:20c (radius), box:10c (half side) or "
+                    "box:xmin,ymin,zmin,xmax,ymax,zmax",
+                    text, why));
+  };
+  if (shape == "none" && size.empty()) {
+    enclose.shape = shape;
+    return;
+  }
+  if (shape != "sphere" && shape != "box")
+    throw bad("unknown shape '" + shape + "'" + did_you_mean(shape, {"sphere", "box", "none"}));
+  if (size.empty()) throw bad("the size is missing");
+  enclose.shape = shape;
+  enclose.corners.reset();
+  try {
+    if (shape == "box" && size.find(',') != std::string::npos)
+      corners_row().set(options, JobValue::of(size));
+    else
+      enclose_size_row().set(options, JobValue::of(size));
+  } catch (const std::exception& e) {
+    throw bad(e.what());
+  }
+}
+
+const std::vector<Shorthand>& shorthand_table() {
+  static const std::vector<Shorthand> table = {
+      {"--farfield", "SHAPE:SIZE",
+       "outer boundary around the body: sphere:20c, box:10c (c = the body's longest side), or box:xmin,…,zmax", true,
+       set_farfield},
+      {"--no-improve", "", "no improvement after gridding", false,
+       [](Options& o, const std::string&) { o.improve.enabled = false; }},
+      {"--ascii", "", "write text instead of binary, where a format has both", false,
+       [](Options& o, const std::string&) { o.output.ascii = true; }},
+  };
+  return table;
+}
+
+}  // namespace delfront

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/report_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "delfront/version.hpp"
+#include "io/output.hpp"
+#include "pipeline/option_table.hpp"
+
+namespace delfront {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// JSON has no infinity and no NaN; they stand for "no cells at all" here.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(Point p) { return Json::array({number(p.x), number(p.y), number(p.z)}); }
+
+Json to_json(const Box& box) {
+  return box.is_empty() ? Json(nullptr) : Json{{"low", to_json(box.low)}, {"high", to_json(box.high)}};
+}
+
+Json to_json(const JobValue& value) {
+  switch (value.kind) {
+    case JobValue::Kind::none:
+      return nullptr;
+    case JobValue::Kind::boolean:
+      return value.boolean;
+    case JobValue::Kind::integer:
+      return value.integer;
+    case JobValue::Kind::number:
+      return number(value.number);
+    case JobValue::Kind::text:
+      return value.text;
+    case JobValue::Kind::list: {
+      Json list = Json::array();
+      for (const JobValue& item : value.items) list.push_back(to_json(item));
+      return list;
+    }
+    case JobValue::Kind::table: {
+      Json table = Json::object();
+      for (std::size_t i = 0; i < value.items.size(); ++i) table[value.names[i]] = to_json(value.items[i]);
+      return table;
+    }
+  }
+  return nullptr;
+}
+
+Json to_json(const Measure& m) {
+  Json worst = Json::array();
+  for (std::size_t i = 0; i < m.worst.size(); ++i) {
+    const double value = i < m.worst_values.size() ? m.worst_values[i] : std::nan("");
+    worst.push_back({{"value", number(value)}, {"at", to_json(m.worst[i].at)}, {"cells", m.worst[i].ids}});
+  }
+  return {
+      {"unit", m.unit},
+      {"min", number(m.min)},
+      {"max", number(m.max)},
+      {"mean", number(m.mean)},
+      {"histogram", {{"low", number(m.histogram_low)}, {"high", number(m.histogram_high)}, {"counts", m.histogram}}},
+      {"worst", worst}};
+}
+
+Json to_json(const SurfaceComponent& c) {
+  return {{"num_triangles", c.num_triangles},
+          {"is_closed", c.is_closed},
+          {"signed_volume", number(c.signed_volume)},
+          {"area", number(c.area)},
+          {"inside_of", c.inside_of < 0 ? Json(nullptr) : Json(c.inside_of)},
+          {"box", to_json(c.box)}};
+}
+
+Json to_json(const RecoveryReport& r) {
+  return {{"missing_edges", r.missing_edges}, {"missing_faces", r.missing_faces}, {"steiner_points", r.steiner_points},
+          {"steiner_moved", r.steiner_moved}, {"steiner_left", r.steiner_left},   {"left", to_json(r.left, 1000)}};
+}
+
+Json to_json(const RefineReport& r) {
+  return {{"points_inserted", r.points_inserted}, {"candidates", r.candidates}, {"rounds", r.rounds}};
+}
+
+Json to_json(const ImproveReport& r) {
+  return {{"passes", r.passes},
+          {"face_swaps", r.face_swaps},
+          {"edge_swaps", r.edge_swaps},
+          {"points_moved", r.points_moved},
+          {"points_removed", r.points_removed},
+          {"points_added", r.points_added},
+          {"min_dihedral_before", number(r.min_dihedral_before_deg)},
+          {"min_dihedral_after", number(r.min_dihedral_after_deg)},
+          {"below_goal", r.below_goal},
+          {"below_goal_forced", r.below_goal_forced}};
+}
+
+Json groups_json(const Mesh& mesh, int dim) {
+  std::vector<std::size_t> count(mesh.groups.size());
+  for (const CellBlock& block : mesh.blocks)
+    for (const GroupId group : block.group)
+      if (dimension(block.type) == dim && group.is_valid()) ++count[group.index()];
+  Json result = Json::array();
+  for (std::size_t g = 0; g < count.size(); ++g) {
+    const Group& group = mesh.groups[GroupId(g)];
+    if (group.dimension == dim) result.push_back({{"name", group.name}, {"kind", group.kind}, {"num_cells", count[g]}});
+  }
+  return result;
+}
+
+Json inputs_json(const std::vector<InputFile>& inputs) {
+  Json result = Json::array();
+  for (const InputFile& file : inputs)
+    result.push_back({{"path", file.path},
+                      {"bytes", file.bytes},
+                      {"hash", file.hash},
+                      {"num_points", file.num_points},
+                      {"num_cells", file.num_cells}});
+  return result;
+}
+
+}  // namespace
+
+Json to_json(const std::vector<Place>& places, std::size_t most) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < std::min(most, places.size()); ++i)
+    result.push_back({{"at", to_json(places[i].at)}, {"ids", places[i].ids}});
+  return result;
+}
+
+Json to_json(const std::vector<Finding>& findings) {
+  Json result = Json::array();
+  for (const Finding& f : findings)
+    result.push_back({{"kind", f.kind},
+                      {"severity", severity_name(f.severity)},
+                      {"count", f.count},
+                      {"message", f.message},
+                      {"remedy", f.remedy},
+                      {"places", to_json(f.places)}});
+  return result;
+}
+
+Json to_json(const SurfaceReport& r) {
+  Json components = Json::array();
+  for (const SurfaceComponent& c : r.components) components.push_back(to_json(c));
+  return {{"num_vertices", r.num_vertices},
+          {"num_triangles", r.num_triangles},
+          {"num_edges", r.num_edges},
+          {"box", to_json(r.box)},
+          {"area", number(r.area)},
+          {"volume", number(r.volume)},
+          {"min_edge", number(r.min_edge)},
+          {"max_edge", number(r.max_edge)},
+          {"mean_edge", number(r.mean_edge)},
+          {"min_angle", number(r.min_angle_deg)},
+          {"min_dihedral", number(r.min_dihedral_deg)},
+          {"is_closed", r.is_closed},
+          {"is_manifold", r.is_manifold},
+          {"is_oriented", r.is_oriented},
+          {"can_bound_volume", r.can_bound_volume},
+          {"reoriented", r.reoriented},
+          {"likely_unit", r.likely_unit},
+          {"components", components},
+          {"findings", to_json(r.findings)}};
+}
+
+Json to_json(const QualityReport& r) {
+  Json measures = Json::object();
+  for (const Measure& m : r.measures) measures[m.name] = to_json(m);
+  return {{"num_points", r.num_points},
+          {"num_cells", r.num_cells},
+          {"num_boundary_faces", r.num_boundary_faces},
+          {"volume", number(r.volume)},
+          {"cells_below_5_deg", r.cells_below_5_deg},
+          {"cells_below_10_deg", r.cells_below_10_deg},
+          {"measures", measures}};
+}
+
+const char* severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "error";
+}
+
+const char* outcome_name(ExitCode code) {
+  switch (code) {
+    case ExitCode::done:
+      return "done";
+    case ExitCode::internal_error:
+      return "internal_error";
+    case ExitCode::usage:
+      return "usage";
+    case ExitCode::bad_input:
+      return "bad_input";
+    case ExitCode::meshing_failed:
+      return "meshing_failed";
+    case ExitCode::gate_not_met:
+      return "gate_not_met";
+    case ExitCode::limit_reached:
+      return "limit_reached";
+    case ExitCode::cannot_write:
+      return "cannot_write";
+    case ExitCode::interrupted:
+      return "interrupted";
+  }
+  return "internal_error";
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  Replacement file(path);
+  Output out(file.temporary(), path);
+  out.text(text);
+  out.close();
+  file.commit();
+}
+
+std::string report_json(const JobResult& result, const Options& options, const std::string& command) {
+  Json stages = Json::array();
+  for (const StageTime& stage : result.stage_times)
+    stages.push_back({{"stage", stage.stage}, {"seconds", number(stage.seconds)}});
+  const std::size_t cells = result.report.quality.num_cells;
+  Json json = {
+      {"delfront", kVersion},
+      {"command", command},
+      {"outcome", outcome_name(result.exit_code)},
+      {"exit_code", static_cast<int>(result.exit_code)},
+      {"error", result.error.empty() ? Json(nullptr) : Json(result.error)},
+      {"places", to_json(result.places, kMaxPlaces)},
+      {"stage", result.stage},
+      {"inputs", inputs_json(result.inputs)},
+      {"options", to_json(option_tree(options))},
+      {"scale",
+       {{"diagonal", number(result.scale.diagonal)},
+        {"longest_side", number(result.scale.longest_side)},
+        {"metres_per_unit", result.scale.metres_per_unit > 0 ? Json(result.scale.metres_per_unit) : Json(nullptr)}}},
+      {"surface", to_json(result.report.surface)},
+      {"recovery", to_json(result.report.recovery)},
+      {"refine", to_json(result.report.refine)},
+      {"improve", to_json(result.report.improve)},
+      {"quality", to_json(result.report.quality)},
+      {"boundaries", groups_json(result.mesh, 2)},
+      {"regions", groups_json(result.mesh, 3)},
+      {"failed_gates", result.failed_gates},
+      {"files_written", result.files_written},
+      {"defects_file", result.defects_file},
+      {"name_changes", result.name_changes},
+      {"warnings", result.warnings},
+      {"stages", stages},
+      {"seconds", number(result.seconds)},
+      {"peak_memory_bytes", result.peak_memory},
+      {"bytes_per_cell", cells ? Json(result.peak_memory / cells) : Json(nullptr)},
+  };
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace delfront

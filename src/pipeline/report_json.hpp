@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "delfront/findings.hpp"
+#include "delfront/grid_check.hpp"
+#include "delfront/job.hpp"
+#include "delfront/surface_check.hpp"
+
+namespace delfront {
+
+/// @brief Parts of the JSON reports; keys are those of the structs, angles in degrees, lengths in model units.
+nlohmann::ordered_json to_json(const std::vector<Place>& places, std::size_t most = 100);
+nlohmann::ordered_json to_json(const std::vector<Finding>& findings);
+nlohmann::ordered_json to_json(const SurfaceReport& report);
+nlohmann::ordered_json to_json(const QualityReport& report);
+
+/// @return "error", "warning", "note"
+const char* severity_name(Severity severity);
+
+/// @return "done", "bad_input", … as in ExitCode
+const char* outcome_name(ExitCode code);
+
+/// @brief Write a text file whole or not at all.
+/// @throws IoError
+void write_text_file(const std::string& path, const std::string& text);
+
+}  // namespace delfront

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+// A whole job. The steps stand in `work`; everything around it sees to it that however they end, the result, the
+// defects file and the report say so.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <new>
+
+#include "delfront/errors.hpp"
+#include "delfront/io.hpp"
+#include "delfront/job.hpp"
+#include "geometry/enclose.hpp"
+#include "pipeline/boundaries.hpp"
+#include "pipeline/quantities.hpp"
+#include "pipeline/report_json.hpp"
+
+namespace delfront {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A job under way: what goes in, and what its steps have made so far.
+struct Run {
+  Options options;  ///< lengths are resolved to model units on the way
+  Context& context;
+  JobResult& result;
+  std::vector<NamedMesh> inputs;
+};
+
+/// FNV-1a, 64 bits: tells whether two runs had the same input; no protection against malice.
+void hash_file(InputFile& file) {
+  if (fs::is_directory(file.path)) return;
+  std::ifstream in(file.path, std::ios::binary);
+  std::uint64_t hash = 14695981039346656037ull;
+  std::vector<char> chunk(1 << 16);
+  while (in) {
+    in.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    const auto got = static_cast<std::size_t>(in.gcount());
+    for (std::size_t i = 0; i < got; ++i) hash = (hash ^ static_cast<unsigned char>(chunk[i])) * 1099511628211ull;
+    file.bytes += got;
+  }
+  file.hash = fmt::format("fnv1a64:{:016x}", hash);
+}
+
+std::string stem_of(const std::string& path) {
+  fs::path p(path);
+  if (!p.has_filename()) p = p.parent_path();  // a folder's name that ends in '/'
+  return p.stem().string();
+}
+
+bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }
+
+bool writes_grid(const Options& options) { return options.stop_after != "geometry" && options.stop_after != "improve"; }
+
+/// Malformed gates and unknown measures are refused before the work: tried on a grid of one cell.
+void check_gates(const std::string& gates) {
+  if (gates.empty()) return;
+  Mesh cell;
+  cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  cell.block(CellType::tetrahedron).vertices = {VertexId(0), VertexId(1), VertexId(2), VertexId(3)};
+  cell.block(CellType::tetrahedron).group = {cell.add_group(3, "cell")};
+  Context quiet;
+  failed_gates(measure_quality(cell, quiet), gates);
+}
+
+/// What is wrong with the options as a whole, and with the places of the outputs, is said before any work.
+void check_before_work(const Options& options) {
+  if (options.input.files.empty()) throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
+  if (writes_grid(options) && options.output.files.empty())
+    throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
+  const EncloseOptions& enclose = options.domain.enclose;
+  if (has_far_field(options) && !enclose.corners && enclose.size.value <= 0)
+    throw UsageError("domain.enclose.size: the size of the far field is missing, e.g. size = \"20c\"");
+  if (enclose.shape == "sphere" && enclose.corners)
+    throw UsageError("domain.enclose.corners: a sphere has none; give size, or shape = \"box\"");
+  if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
+    throw UsageError("output.units: the unit of the input is not known; say it with --units (input.units)");
+  check_gates(options.output.require);
+  for (const std::string& path : options.input.files) format_of(path);
+  if (writes_grid(options))
+    for (const std::string& path : options.output.files) {
+      format_of(path, options.output.format, true);
+      check_writable(path);
+    }
+  for (const std::string& path : {options.output.report, options.output.defects})
+    if (!path.empty()) check_writable(path);
+}
+
+void read_inputs(Run& run) {
+  const StageTimer timer(run.context, "read");
+  const std::vector<std::string>& files = run.options.input.files;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    run.context.progress("read", i, files.size(), "files");
+    run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
+    InputFile file{files[i], 0, "", run.inputs.back().mesh.points.size(), 0};
+    for (const CellBlock& block : run.inputs.back().mesh.blocks) file.num_cells += block.size();
+    hash_file(file);
+    run.result.inputs.push_back(std::move(file));
+  }
+  run.context.progress("read", files.size(), files.size(), "files");
+}
+
+/// Lengths in percent, in longest sides or in units become model units, so that nobody after us has to ask.
+void resolve_lengths(Options& options, const LengthScale& scale) {
+  const auto resolve = [&scale](auto& length) {
+    if (length) length = Length{resolve_length(*length, scale), ""};
+  };
+  resolve(options.size.hmin);
+  resolve(options.size.hmax);
+  resolve(options.domain.enclose.h);
+  EncloseOptions& enclose = options.domain.enclose;
+  if (enclose.size.value > 0) enclose.size = {resolve_length(enclose.size, scale), ""};
+  if (options.size.hmin && options.size.hmax && options.size.hmin->value > options.size.hmax->value)
+    throw UsageError(
+        fmt::format("size.hmin ({:g}) is above size.hmax ({:g})", options.size.hmin->value, options.size.hmax->value));
+}
+
+Model make_model(Run& run) {
+  Model model = build_model(run.inputs, run.context);
+  model.feature_angle = run.options.input.feature_angle;
+  apply_boundaries(run.options.boundaries, model);
+  const Box box = model.bounding_box();
+  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
+  resolve_lengths(run.options, run.result.scale);
+  return model;
+}
+
+void rescale(const Options& options, Mesh& mesh) {
+  if (options.output.units.empty()) return;
+  const double factor = metres_per_unit(options.input.units) / metres_per_unit(options.output.units);
+  for (Point& p : mesh.points) p = factor * p;
+}
+
+void write_outputs(Run& run) {
+  const StageTimer timer(run.context, "write");
+  const OutputOptions& output = run.options.output;
+  rescale(run.options, run.result.mesh);
+  for (std::size_t i = 0; i < output.files.size(); ++i) {
+    run.context.progress("write", i, output.files.size(), "files");
+    const WriteOptions how{.binary = !output.ascii, .version = output.msh_version, .compress = output.compress};
+    for (std::string& change : write_mesh(run.result.mesh, output.files[i], run.context, how, output.format))
+      run.result.name_changes.push_back(fmt::format("{}: {}", output.files[i], change));
+    run.result.files_written.push_back(output.files[i]);
+  }
+  run.context.progress("write", output.files.size(), output.files.size(), "files");
+}
+
+/// A surface alone: to look at it (geometry), or to write it, with its far field (surface).
+void stop_at_surface(Run& run, Model model) {
+  run.result.report.surface = check_surface(model, run.context);
+  run.result.mesh = surface_mesh(model);
+  if (run.options.stop_after == "geometry") {
+    if (!run.result.report.surface.can_bound_volume)
+      throw InputError("the surface cannot bound a volume; see the findings");
+    return;
+  }
+  write_outputs(run);
+}
+
+void work(Run& run) {
+  check_floating_point_mode();
+  check_before_work(run.options);
+  read_inputs(run);
+  Model model = make_model(run);
+  if (run.options.stop_after == "geometry") return stop_at_surface(run, std::move(model));
+  if (has_far_field(run.options)) {
+    add_far_field(model, run.options.domain.enclose, run.result.scale, run.context);
+    if (run.options.domain.keep.empty() && run.options.domain.keep_points.empty()) run.options.domain.keep = "outside";
+  }
+  if (run.options.stop_after == "surface" || run.options.volume.method == "none")
+    return stop_at_surface(run, std::move(model));
+  if (run.options.stop_after == "volume") run.options.improve.enabled = false;
+  Outcome outcome = generate(std::move(model), run.options, run.context);
+  run.result.report = std::move(outcome.report);
+  run.result.mesh = std::move(outcome.mesh);
+  run.context.check_cells(run.result.report.quality.num_cells);
+  if (!run.options.output.require.empty())
+    run.result.failed_gates = failed_gates(run.result.report.quality, run.options.output.require);
+  if (writes_grid(run.options)) write_outputs(run);
+  if (run.result.failed_gates.empty()) return;
+  run.result.exit_code = ExitCode::gate_not_met;
+  run.result.error = "the grid was written, but does not meet: " + run.result.failed_gates[0];
+  for (std::size_t i = 1; i < run.result.failed_gates.size(); ++i)
+    run.result.error += "; " + run.result.failed_gates[i];
+}
+
+std::string default_defects_path(const Options& options) {
+  fs::path base = options.output.files.empty() ? options.input.files.front() : options.output.files.front();
+  if (!base.has_filename()) base = base.parent_path();
+  if (options.output.files.empty()) base = base.filename();  // beside the input may be no place for us: where we are
+  return (base.parent_path() / (base.stem().string() + "_defects.vtp")).string();
+}
+
+/// Everything that is wrong, with places, for the viewer. Best effort: it must not hide why the run failed.
+void write_defects_file(Run& run) {
+  Context quiet;  // neither the limit nor the signal that ended the run may end this
+  JobResult& result = run.result;
+  Mesh surface;
+  try {
+    if (result.exit_code == ExitCode::bad_input && !run.inputs.empty() && result.report.surface.findings.empty()) {
+      const Model model = build_model(run.inputs, quiet);
+      surface = surface_mesh(model);
+      result.report.surface = check_surface(model, quiet);
+    }
+  } catch (const Error&) {
+    // the input is too broken to look at: the places of the error itself are what there is
+  }
+  std::vector<Finding> findings = result.report.surface.findings;
+  std::vector<Place> places = result.places;
+  std::erase_if(places, [](const Place& place) { return !is_finite(place.at); });
+  if (!places.empty() && !has_errors(findings))
+    findings.push_back({outcome_name(result.exit_code), Severity::error, places.size(), result.error, "", places});
+  const bool is_asked_for = !run.options.output.defects.empty();
+  if (findings.empty() || (!is_asked_for && !has_errors(findings))) return;
+  const std::string path = is_asked_for ? run.options.output.defects : default_defects_path(run.options);
+  try {
+    write_defects(findings, path, surface.points.empty() ? nullptr : &surface, quiet);
+    result.defects_file = path;
+  } catch (const Error& e) {
+    result.warnings.push_back(fmt::format("no defects file: {}", e.what()));
+  }
+}
+
+void put_error(JobResult& result, ExitCode code, const std::string& message, std::vector<Place> places = {}) {
+  result.exit_code = code;
+  result.error = message;
+  result.places = std::move(places);
+  if (!result.files_written.empty() && code == ExitCode::interrupted) {
+    result.error = "interrupted; complete are:";
+    for (const std::string& path : result.files_written) result.error += " " + path;
+  }
+}
+
+/// Run the steps; every way they can end becomes an exit code and a sentence.
+void work_and_catch(Run& run) {
+  JobResult& result = run.result;
+  try {
+    work(run);
+  } catch (const Error& e) {
+    put_error(result, e.exit_code, e.what(), e.places);
+  } catch (const std::bad_alloc&) {
+    put_error(result, ExitCode::limit_reached,
+              "out of memory; ask for larger sizes (--hmax, --growth) or use a machine with more");
+  } catch (const std::exception& e) {
+    put_error(result, ExitCode::internal_error,
+              fmt::format("unexpected error: {}; please report this with the input file and the command", e.what()));
+  }
+  if (result.exit_code == ExitCode::done || result.exit_code == ExitCode::gate_not_met) return;
+  result.mesh = {};
+}
+
+/// The report of the run. That it cannot be written is the run's failure only where nothing worse happened.
+void write_report(const Options& options, const std::string& command, JobResult& result) {
+  if (options.output.report.empty()) return;
+  try {
+    write_text_file(options.output.report, report_json(result, options, command));
+  } catch (const Error& e) {
+    if (result.exit_code == ExitCode::done)
+      put_error(result, e.exit_code, e.what());
+    else
+      result.warnings.push_back(fmt::format("no report: {}", e.what()));
+  }
+}
+
+void set_limits(const LimitOptions& limits, Context& context) {
+  if (limits.time > 0) context.time_limit = limits.time;
+  if (limits.memory > 0) context.memory_limit = limits.memory;
+  if (limits.max_cells > 0) context.max_cells = limits.max_cells;
+}
+
+}  // namespace
+
+JobResult run_job(const Options& options, Context& context, const std::string& command) {
+  JobResult result;
+  set_limits(options.limits, context);
+  const auto outer_log = context.on_log;
+  const auto outer_progress = context.on_progress;
+  context.on_log = [&](LogLevel level, const std::string& message) {
+    if (level == LogLevel::warning) result.warnings.push_back(message);
+    if (outer_log) outer_log(level, message);
+  };
+  context.on_progress = [&](const Progress& progress) {
+    result.stage = progress.stage;
+    if (outer_progress) outer_progress(progress);
+  };
+  Run run{options, context, result, {}};
+  work_and_catch(run);
+  context.on_log = outer_log;
+  context.on_progress = outer_progress;
+  const bool may_have_defects = result.exit_code == ExitCode::bad_input ||
+                                result.exit_code == ExitCode::meshing_failed || !options.output.defects.empty();
+  if (may_have_defects && result.exit_code != ExitCode::usage && result.exit_code != ExitCode::cannot_write)
+    write_defects_file(run);
+  for (const std::string& warning : result.report.warnings)
+    if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end())
+      result.warnings.push_back(warning);
+  result.stage_times = context.stage_times;
+  result.seconds = context.seconds_since_start();
+  result.peak_memory = peak_resident_memory();
+  write_report(options, command, result);
+  return result;
+}
+
+}  // namespace delfront

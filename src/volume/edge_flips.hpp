@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <unordered_set>
+#include <vector>
+
+#include "tetra/tet_complex.hpp"
+#include "volume/segments.hpp"
+
+namespace delfront {
+
+/// @brief The pieces of the model's edges: what flips and refilled cavities must not lose.
+class RequiredEdges {
+ public:
+  explicit RequiredEdges(const Segments& segments);
+  bool has(VertexIndex a, VertexIndex b) const { return edges_.contains(key(a, b)); }
+
+ private:
+  static std::uint64_t key(VertexIndex a, VertexIndex b) {
+    return static_cast<std::uint64_t>(a < b ? a : b) << 32 | (a < b ? b : a);
+  }
+  std::unordered_set<std::uint64_t> edges_;
+};
+
+/// @brief Make (a, b) an edge by switching what lies in its way: faces (2-3) and edges, any of which the segment cuts.
+///
+/// A switch is kept where the segment cuts less afterwards, and undone otherwise. Required edges and constrained faces
+/// stay; every new tet is positive. Between vertices of one flat part of the surface an edge in the way is exchanged for the
+/// other diagonal even where a point has to be added above or below it.
+/// @return false where that did not succeed; the complex is valid all the same
+/// @par Source  George, Borouchaki & Saltel (2003); Si (2015), section 4
+class EdgeFlips {
+ public:
+  EdgeFlips(TetComplex& complex, const RequiredEdges& required) : c_(complex), required_(required) {}
+
+  /// @param flat  one a vertex: whether it lies in the flat part of the surface that (a, b) runs through
+  bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
+
+ private:
+  /// A face that the segment cuts, or an edge that it cuts exactly (`is_edge`: between node[0] and node[1]).
+  struct Obstacle {
+    FaceRef ref;
+    VertexIndex node[3];
+    bool is_edge;
+  };
+  enum class Way { adjacent, blocked, open };
+
+  Way find_obstacles(VertexIndex a, VertexIndex b);
+  void add_cut_faces(TetIndex t, VertexIndex a, VertexIndex b, bool& through_vertex);
+  bool improve(VertexIndex a, VertexIndex b);
+  bool switch_diagonal(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
+  bool fill_half_from_point(VertexIndex p, VertexIndex q, std::size_t i, std::size_t j);
+  bool keep_if_better(VertexIndex a, VertexIndex b, std::size_t before);
+  bool switch_face(const Obstacle& at);
+  bool switch_edge(TetIndex t, VertexIndex p, VertexIndex q, VertexIndex from, VertexIndex to);
+  bool collect_ring(TetIndex t, VertexIndex p, VertexIndex q);
+  bool triangulate(VertexIndex p, VertexIndex q, std::size_t i, std::size_t j);
+  void replace(const std::vector<TetIndex>& old_tets);
+
+  TetComplex& c_;
+  const RequiredEdges& required_;
+  std::vector<Obstacle> obstacles_, tried_;
+  bool may_add_points_ = false;
+  int sideways_ = 0;  ///< switches left that may leave as much in the way as before
+  std::vector<TetIndex> ring_, scratch_, visited_, new_tets_;
+  std::vector<VertexIndex> polygon_;
+  std::vector<std::array<VertexIndex, 4>> made_, undo_;
+  std::vector<signed char> known_;  ///< by (i, j): whether that part of the ring can be triangulated; 0 not tried
+  std::vector<std::uint8_t> apex_;  ///< by (i, j): how
+};
+
+}  // namespace delfront

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Delaunay of the surface's vertices; edges by Steiner points; facets by filling what they cut again; regions; what is not
+// gridded goes away; Steiner points off the surface.
+#include "volume/recover.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "delaunay/delaunay.hpp"
+#include "volume/edge_flips.hpp"
+#include "volume/facets.hpp"
+#include "volume/regions.hpp"
+#include "volume/segments.hpp"
+#include "volume/unsplit.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
+constexpr int kMaxRestarts = 80;
+
+TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
+  TetComplex complex;
+  const std::size_t n = model.points.size();
+  std::vector<double> sum(n, 0), count(n, 0);
+  for (const auto& [a, b] : segments.ends) {
+    const double l = distance(model.points[VertexId(a)], model.points[VertexId(b)]);
+    for (const VertexIndex v : {a, b}) sum[v] += l, count[v] += 1;
+  }
+  for (std::size_t v = 0; v < n; ++v) {
+    complex.add_vertex(model.points[VertexId(v)], count[v] > 0 ? sum[v] / count[v] : 0);
+    complex.on_boundary[v] = 1;
+  }
+  const Box box = model.bounding_box();  // a brick keeps the hull, and its ghosts, away from the model
+  const double away = std::exp2(std::ceil(std::log2(box.diagonal())));
+  for (int corner = 0; corner < 8; ++corner) {
+    Point p = box.centre();
+    for (int axis = 0; axis < 3; ++axis) p[axis] += (corner >> axis & 1 ? 2 : -2) * away;
+    complex.add_vertex(p, 0);
+  }
+  return complex;
+}
+
+[[noreturn]] void fail_at_facets(const Model& model, const std::vector<TriangleId>& failed) {
+  std::vector<Place> places;
+  for (const TriangleId t : failed) {
+    const auto& c = model.triangles[t];
+    places.push_back({(model.points[c[0]] + model.points[c[1]] + model.points[c[2]]) / 3, {t.value}});
+  }
+  const Point at = places[0].at;
+  throw MeshingError(fmt::format("boundary recovery: {} triangles could not be recovered, the first near ({:g}, {:g}, {:g})",
+                                 failed.size(), at.x, at.y, at.z),
+                     places);
+}
+
+/// Triangles that lie (nearly) in one plane and hang together; only a guide for the order of trials, so a tolerance will do.
+class FlatParts {
+ public:
+  FlatParts(const Model& model, const Segments& segments) : segments_(segments), part_(model.triangles.size()) {
+    std::iota(part_.begin(), part_.end(), 0u);
+    first_.assign(segments.ends.size(), kNoIndex);
+    for (std::uint32_t t = 0; t < part_.size(); ++t)
+      for (const std::uint32_t e : segments.of_triangle[t]) {
+        if (first_[e] == kNoIndex)
+          first_[e] = t;
+        else if (dot(normal(model, t), normal(model, first_[e])) > kCosFlat)
+          part_[find(t)] = find(first_[e]);
+      }
+    for (std::uint32_t t = 0; t < part_.size(); ++t) part_[t] = find(t);
+    members_.resize(part_.size());
+    for (std::uint32_t t = 0; t < part_.size(); ++t) members_[part_[t]].push_back(t);
+    for (const auto& c : model.triangles) corners_.push_back({c[0].value, c[1].value, c[2].value});
+  }
+
+  /// @param[out] is_flat  by vertex: in the part of one of the edge's triangles; Steiner points on its edges too
+  void mark(std::uint32_t edge, std::vector<bool>& is_flat) const {
+    is_flat.assign(segments_.first_steiner + segments_.steiner_edge.size(), false);
+    for (const std::uint32_t t : members_[part_[first_[edge]]])
+      for (std::size_t k = 0; k < 3; ++k) {
+        is_flat[corners_[t][k]] = true;
+        for (const auto& s : segments_.chain[segments_.of_triangle[t][k]]) is_flat[s.vertex] = true;
+      }
+  }
+
+ private:
+  static constexpr double kCosFlat = 0.999999;  ///< 0.08 degrees
+
+  static Point normal(const Model& model, std::uint32_t t) {
+    const auto& c = model.triangles[TriangleId(t)];
+    const Point n = cross(model.points[c[1]] - model.points[c[0]], model.points[c[2]] - model.points[c[0]]);
+    const double l = length(n);
+    return l > 0 ? n / l : n;
+  }
+  std::uint32_t find(std::uint32_t t) {
+    while (part_[t] != t) t = part_[t] = part_[part_[t]];
+    return t;
+  }
+
+  const Segments& segments_;
+  std::vector<std::uint32_t> part_, first_;
+  std::vector<std::vector<std::uint32_t>> members_;
+  std::vector<std::array<VertexIndex, 3>> corners_;
+};
+
+/// Switches what lies in the way of missing edges; plans a split of those that stay missing.
+/// @return whether all edges are there
+bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments, const RequiredEdges& required,
+                     RecoveryReport& report, Context& context) {
+  const std::vector<Piece> missing = find_missing_pieces(complex, segments, nullptr, context);
+  if (segments.steiner_edge.empty()) report.missing_edges = missing.size();
+  EdgeFlips flips(complex, required);
+  std::vector<Piece> hard;
+  const FlatParts flat(model, segments);
+  std::vector<bool> is_flat;
+  for (const Piece& piece : missing) {
+    flat.mark(piece.edge, is_flat);
+    if (!flips.recover(piece.low, piece.high, is_flat)) hard.push_back(piece);
+    context.check_limits();
+  }
+  for (const Piece& piece : hard) plan_split(model, segments, piece);
+  return hard.empty();
+}
+
+/// The complex with all facets in it. Edges and facets that resist get points on their edges, and all starts over.
+TetComplex recover_boundary(const Model& model, Segments& segments, std::vector<Subface>& subfaces,
+                            RecoveryReport& report, Context& context) {
+  std::vector<TriangleId> failed;
+  for (int restart = 0; restart < kMaxRestarts; ++restart) {
+    TetComplex complex = complex_of_vertices(model, segments);
+    DelaunayKernel kernel(complex);
+    build_delaunay(complex, kernel, context);
+    insert_chains(complex, kernel, model, segments);
+    if (restart >= kMaxRestartsWithFlips) recover_segments(complex, kernel, model, segments, context);
+    const RequiredEdges required(segments);
+    if (!switch_to_edges(complex, model, segments, required, report, context)) continue;
+    subfaces.clear();
+    std::size_t num_missing = 0;
+    failed = recover_facets(complex, model, segments, required, subfaces, num_missing, context);
+    if (restart == 0 || report.missing_faces == 0) report.missing_faces = num_missing;
+    if (failed.empty()) return complex;
+    for (const TriangleId t : failed)
+      for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
+  }
+  fail_at_facets(model, failed);
+}
+
+}  // namespace
+
+TetComplex tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
+                                   const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context) {
+  const StageTimer timer(context, "recover");
+  Segments segments = build_segments(model);
+  std::vector<Subface> subfaces;
+  TetComplex complex = recover_boundary(model, segments, subfaces, report, context);
+  const auto facts = colour_regions(complex, subfaces, model, is_far_field, context);
+  strip_outside(complex, choose_regions(complex, facts, domain));
+  unsplit_boundary(complex, segments, report, context);
+  return complex;
+}
+
+}  // namespace delfront

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+// Terms: the star of s is cut by constrained faces into sectors, one a region (or outside) between two facets. The faces
+// of one facet that touch s form a path from the vertex before s on its edge to the vertex after it. Without s a path's
+// polygon is triangulated again; its triangles bound the sectors on both sides of it.
+#include "volume/unsplit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "volume/visible_point.hpp"
+
+namespace delfront {
+
+namespace {
+
+using Face = std::array<VertexIndex, 3>;
+
+struct Path {
+  std::vector<VertexIndex> vertices;  ///< from the vertex before s to the one after it
+  std::vector<Face> triangles;        ///< of the polygon without s, in the order of the path
+  int sector[2] = {-1, -1};           ///< on the side that the triangles' normals point to, and on the other
+};
+
+struct Sector {
+  std::vector<TetIndex> tets;
+  bool is_ghost = false;
+  std::uint32_t region = TetComplex::kOutside;
+  Point moved;                                      ///< where its point goes
+  VertexIndex vertex = kNoIndex;                    ///< the point itself
+  std::vector<Face> walls;                          ///< link faces and polygon triangles, normals inwards
+};
+
+class PointRemoval {
+ public:
+  PointRemoval(TetComplex& complex, const Segments& segments) : c_(complex), segments_(segments) {}
+
+  /// @return false where s has to stay
+  bool remove(VertexIndex s) {
+    s_ = s;
+    c_.star(s, star_);
+    segments_.neighbours(s, ends_);
+    if (!find_sectors() || !find_paths() || !triangulate_paths()) return false;
+    for (Sector& sector : sectors_)
+      if (!sector.is_ghost && !place(sector)) return false;
+    rebuild();
+    return true;
+  }
+
+ private:
+  bool find_sectors() {
+    sectors_.clear();
+    sector_of_.clear();
+    for (const TetIndex first : star_) {
+      if (sector_of_.contains(first)) continue;
+      Sector sector;
+      sector.is_ghost = c_.is_ghost(first);
+      sector.region = c_.region[first];
+      const int id = static_cast<int>(sectors_.size());
+      sector.tets.push_back(first);
+      sector_of_[first] = id;
+      for (std::size_t i = 0; i < sector.tets.size(); ++i)
+        for (unsigned f = 0; f < 4; ++f) {
+          const FaceRef ref = 4 * sector.tets[i] + f;
+          if (c_.node[ref] == s_ || c_.is_constrained(ref)) continue;
+          const TetIndex next = c_.neigh[ref] >> 2;
+          if (sector_of_.try_emplace(next, id).second) sector.tets.push_back(next);
+        }
+      sectors_.push_back(std::move(sector));
+    }
+    return true;
+  }
+
+  /// Follows the constrained faces from the vertex before s to the one after it.
+  bool find_paths() {
+    struct Wing {
+      FaceRef ref;
+      VertexIndex other;
+    };
+    std::map<VertexIndex, std::vector<Wing>> wings;  // by link vertex: the faces (s, vertex, other), once each
+    std::size_t faces = 0;
+    for (const TetIndex t : star_)
+      for (unsigned f = 0; f < 4; ++f) {
+        const FaceRef ref = 4 * t + f;
+        if (c_.node[ref] == s_ || !c_.is_constrained(ref) || ref > c_.neigh[ref]) continue;
+        const auto n = c_.face_nodes(ref);
+        const auto at = static_cast<std::size_t>(std::find(n.begin(), n.end(), s_) - n.begin());
+        const VertexIndex x = n[(at + 1) % 3], y = n[(at + 2) % 3];
+        wings[x].push_back({ref, y});
+        wings[y].push_back({ref, x});
+        ++faces;
+      }
+    paths_.clear();
+    std::size_t walked = 0;
+    for (const Wing& start : wings[ends_[0]]) {
+      Path path;
+      path.vertices = {ends_[0], start.other};
+      sides_of(start.ref, ends_[0], path);
+      FaceRef came = start.ref;
+      while (path.vertices.back() != ends_[1]) {
+        const auto& here = wings[path.vertices.back()];
+        if (here.size() != 2) return false;
+        const Wing& next = here[here[0].ref == came ? 1 : 0];
+        came = next.ref;
+        path.vertices.push_back(next.other);
+      }
+      walked += path.vertices.size() - 1;
+      paths_.push_back(std::move(path));
+    }
+    return walked == faces && !paths_.empty();
+  }
+
+  /// The sectors on both sides of face (s, x, next on the path).
+  void sides_of(FaceRef ref, VertexIndex x, Path& path) {
+    const auto n = c_.face_nodes(ref);
+    const auto at = static_cast<std::size_t>(std::find(n.begin(), n.end(), s_) - n.begin());
+    const bool same_side = n[(at + 1) % 3] == x;  // the normal of (s, x, next) points into ref's own tet
+    path.sector[same_side ? 0 : 1] = sector_of_.at(ref >> 2);
+    path.sector[same_side ? 1 : 0] = sector_of_.at(c_.neigh[ref] >> 2);
+  }
+
+  bool triangulate_paths() {
+    for (Path& path : paths_) {
+      if (path.sector[0] == path.sector[1]) return false;  // the facet ends here, with one region all round
+      const VertexIndex apex = off_plane(path);
+      if (apex == kNoIndex || !clip_ears(path, apex)) return false;
+    }
+    for (Sector& sector : sectors_) {
+      for (const TetIndex t : sector.tets) {
+        if (sector.is_ghost) continue;
+        sector.walls.push_back(c_.face_nodes(4 * t + static_cast<unsigned>(c_.local_index(t, s_))));
+      }
+    }
+    for (const Path& path : paths_)
+      for (const Face& f : path.triangles)
+        for (const int side : {0, 1})
+          sectors_[static_cast<std::size_t>(path.sector[side])].walls.push_back(side == 0 ? f : Face{f[0], f[2], f[1]});
+    return true;
+  }
+
+  VertexIndex off_plane(const Path& path) {
+    for (const TetIndex t : star_) {
+      if (c_.is_ghost(t)) continue;
+      for (unsigned k = 0; k < 4; ++k) {
+        const VertexIndex v = c_.node[4 * t + k];
+        if (v != s_ && c_.orient(s_, path.vertices[0], path.vertices[1], v) != 0) return v;
+      }
+    }
+    return kNoIndex;
+  }
+
+  bool clip_ears(Path& path, VertexIndex apex) {
+    std::vector<VertexIndex> left = path.vertices;
+    const int sign = c_.orient(s_, left[0], left[1], apex);
+    auto turns = [&](VertexIndex a, VertexIndex b, VertexIndex c) { return c_.orient(a, b, c, apex) * sign; };
+    auto is_ear = [&](std::size_t i) {
+      const VertexIndex a = left[i - 1], b = left[i], c = left[i + 1];
+      if (turns(a, b, c) <= 0) return false;
+      for (const VertexIndex v : left)
+        if (v != a && v != b && v != c && turns(a, b, v) >= 0 && turns(b, c, v) >= 0 && turns(c, a, v) >= 0) return false;
+      return true;
+    };
+    path.triangles.clear();
+    while (left.size() > 2) {
+      std::size_t best = 0;
+      double shortest = 0;
+      for (std::size_t i = 1; i + 1 < left.size(); ++i) {
+        const double cut = distance(c_.point(left[i - 1]), c_.point(left[i + 1]));
+        if ((best == 0 || cut < shortest) && is_ear(i)) best = i, shortest = cut;
+      }
+      if (best == 0) return false;
+      path.triangles.push_back({left[best - 1], left[best], left[best + 1]});
+      left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    return true;
+  }
+
+  /// Finds a place that sees all walls of a sector, from s inwards.
+  bool place(Sector& sector) {
+    const Point s = c_.point(s_);
+    Point centre, inwards;
+    double reach = 0;
+    std::vector<Wall> walls;
+    for (const Face& f : sector.walls) {
+      walls.push_back({c_.exact(f[0]), c_.exact(f[1]), c_.exact(f[2])});
+      for (const VertexIndex v : f) {
+        centre = centre + c_.point(v) / (3 * static_cast<double>(sector.walls.size()));
+        reach = std::max(reach, distance(s, c_.point(v)));
+      }
+    }
+    for (const Path& path : paths_)
+      for (const int side : {0, 1})
+        if (&sectors_[static_cast<std::size_t>(path.sector[side])] == &sector) {
+          const Point n = cross(c_.point(path.vertices[0]) - s, c_.point(path.vertices[1]) - s);
+          if (const double l = length(n); l > 0) inwards = inwards + (side == 0 ? 1 : -1) * n / l;
+        }
+    const auto found = find_visible_point(walls, s, {centre - s, inwards}, reach);
+    if (found) sector.moved = *found;
+    return found.has_value();
+  }
+
+  /// One new tet a wall. Faces are matched inside of each sector; the polygons' triangles across them.
+  void rebuild() {
+    c_.segment_points.erase(s_);
+    const double h = c_.vertex[s_].h;
+    bool s_is_used = false;
+    for (Sector& sector : sectors_) {
+      if (sector.is_ghost) continue;
+      sector.vertex = s_is_used ? c_.add_vertex(sector.moved, h) : s_;
+      c_.vertex[sector.vertex] = {sector.moved.x, sector.moved.y, sector.moved.z, h};
+      c_.on_boundary[sector.vertex] = 0;
+      s_is_used = true;
+    }
+    std::map<std::pair<Face, int>, FaceRef> polygon_faces;  // sorted triangle and side
+    std::vector<std::pair<FaceRef, bool>> links;            // outer refs and flags, per sector in order of its tets
+    for (Sector& sector : sectors_) {
+      links.clear();
+      std::vector<Face> link_keys;
+      for (const TetIndex t : sector.tets) {
+        const FaceRef ref = 4 * t + static_cast<unsigned>(c_.local_index(t, s_));
+        links.push_back({c_.neigh[ref], c_.is_constrained(ref)});
+        link_keys.push_back(sorted(c_.face_nodes(ref)));
+      }
+      for (const TetIndex t : sector.tets) c_.kill_tet(t);
+      fill(sector, links, link_keys, polygon_faces);
+    }
+    for (const auto& [key, ref] : polygon_faces) {
+      if (key.second != 0) continue;
+      c_.bond(ref, polygon_faces.at({key.first, 1}));
+      c_.set_constrained_both(ref, true);
+    }
+  }
+
+  static Face sorted(Face f) {
+    std::sort(f.begin(), f.end());
+    return f;
+  }
+
+  void fill(const Sector& sector, const std::vector<std::pair<FaceRef, bool>>& links, const std::vector<Face>& link_keys,
+            std::map<std::pair<Face, int>, FaceRef>& polygon_faces) {
+    std::map<Face, std::pair<FaceRef, bool>> open;
+    for (std::size_t i = 0; i < links.size(); ++i) open[link_keys[i]] = links[i];
+    const std::size_t first_polygon = sector.is_ghost ? 0 : links.size();
+    for (std::size_t i = 0; i < sector.walls.size(); ++i) {
+      const auto [x, y, z] = sector.walls[i];
+      const TetIndex t = c_.new_tet();
+      c_.set_nodes(t, x, y, z, sector.is_ghost ? kGhost : sector.vertex);
+      c_.flag[t] = TetComplex::fresh;
+      c_.region[t] = sector.region;
+      if (!sector.is_ghost)
+        for (const VertexIndex v : {x, y, z, sector.vertex}) c_.vertex_tet[v] = t;
+      if (i >= first_polygon) polygon_faces[{sorted({x, y, z}), side_of(sector, i - first_polygon)}] = 4 * t + 3;
+      for (unsigned f = 0; f < (i >= first_polygon ? 3u : 4u); ++f) {
+        const FaceRef ref = 4 * t + f;
+        const Face key = sorted(c_.face_nodes(ref));
+        const auto found = open.find(key);
+        if (found == open.end()) {
+          open[key] = {ref, false};
+        } else {
+          c_.bond(ref, found->second.first);
+          c_.set_constrained(ref, found->second.second);
+          open.erase(found);
+        }
+      }
+    }
+    DELFRONT_CHECK(open.empty());
+  }
+
+  /// 0 where the sector's i-th polygon wall is seen from the side its path's triangles look to, else 1.
+  int side_of(const Sector& sector, std::size_t i) const {
+    const int id = static_cast<int>(&sector - sectors_.data());
+    for (const Path& path : paths_)
+      for (std::size_t k = 0; k < path.triangles.size(); ++k)
+        for (const int side : {0, 1})
+          if (path.sector[side] == id && i-- == 0) return side;
+    DELFRONT_CHECK(false && "a polygon wall belongs to a path");
+    return 0;
+  }
+
+  TetComplex& c_;
+  const Segments& segments_;
+  VertexIndex s_ = kNoIndex;
+  std::vector<VertexIndex> ends_;
+  std::vector<TetIndex> star_;
+  std::vector<Sector> sectors_;
+  std::map<TetIndex, int> sector_of_;
+  std::vector<Path> paths_;
+};
+
+void forget(Segments& segments, VertexIndex s) {
+  auto& chain = segments.chain[segments.steiner_edge[s - segments.first_steiner]];
+  std::erase_if(chain, [&](const Segments::Steiner& p) { return p.vertex == s; });
+}
+
+/// Points that stay become plain coordinates; every tet around them has to stay positive.
+void round_points(TetComplex& c, const std::vector<VertexIndex>& left, RecoveryReport& report) {
+  std::vector<TetIndex> star;
+  c.segment_points.clear();
+  for (const VertexIndex s : left) {
+    c.on_boundary[s] = 1;
+    const Point at = c.point(s);
+    report.left.push_back({at, {s}});
+    c.star(s, star);
+    for (const TetIndex t : star) {
+      const std::uint32_t* n = &c.node[4 * t];
+      if (!c.is_ghost(t) && c.orient(n[0], n[1], n[2], n[3]) <= 0)
+        throw MeshingError(fmt::format("boundary recovery: a point on an edge near ({:g}, {:g}, {:g}) cannot be rounded to "
+                                       "double precision without turning a cell over; the surface is too thin there",
+                                       at.x, at.y, at.z),
+                           {{at, {s}}});
+    }
+  }
+}
+
+}  // namespace
+
+void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& report, Context& context) {
+  std::vector<VertexIndex> left;
+  const auto first = static_cast<VertexIndex>(segments.first_steiner);
+  for (VertexIndex s = first; s < first + segments.steiner_edge.size(); ++s) {
+    if (complex.vertex_tet[s] == kNoIndex)
+      complex.segment_points.erase(s);  // on a border of nothing that is kept
+    else
+      left.push_back(s);
+  }
+  report.steiner_points = segments.steiner_edge.size();
+  PointRemoval removal(complex, segments);
+  for (std::size_t before = left.size() + 1; !left.empty() && left.size() < before;) {
+    before = left.size();
+    std::vector<VertexIndex> still;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (removal.remove(left[i])) {
+        forget(segments, left[i]);
+        ++report.steiner_moved;
+      } else {
+        still.push_back(left[i]);
+      }
+      if (i % 64 == 0) context.progress("recover", i, left.size(), "points moved off edges");
+    }
+    left = std::move(still);
+  }
+  report.steiner_left = left.size();
+  round_points(complex, left, report);
+}
+
+}  // namespace delfront

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/visible_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace delfront {
+
+namespace {
+
+constexpr int kHalvings = 60;   ///< of the first step: down to the resolution of doubles
+constexpr int kClimbSteps = 30;
+
+double worst_ratio(const std::vector<Wall>& walls, Point p) {
+  double worst = 1;
+  for (const Wall& w : walls) {
+    const Point a = w[0].approx, b = w[1].approx, c = w[2].approx;
+    const double volume = dot(cross(b - a, c - a), p - a) / 6;
+    const double sum = squared_length(b - a) + squared_length(c - a) + squared_length(p - a) + squared_length(c - b) +
+                       squared_length(p - b) + squared_length(p - c);
+    worst = std::min(worst, volume <= 0 || sum <= 0 ? 0 : 12 * std::cbrt(9 * volume * volume) / sum);
+  }
+  return worst;
+}
+
+bool sees_all(const std::vector<Wall>& walls, Point p) {
+  const ExactPoint at = ExactPoint::explicit_point(p);
+  return std::all_of(walls.begin(), walls.end(), [&](const Wall& w) { return orient3d(w[0], w[1], w[2], at) > 0; });
+}
+
+Point climb(const std::vector<Wall>& walls, Point p, double best, double step) {
+  for (int k = 0; k < kClimbSteps; ++k) {
+    bool moved = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {1.0, -1.0}) {
+        Point next = p;
+        next[axis] += sign * step;
+        const double ratio = worst_ratio(walls, next);
+        if (ratio <= best || !sees_all(walls, next)) continue;
+        p = next, best = ratio, moved = true;
+      }
+    if (!moved) step *= 0.5;
+  }
+  return p;
+}
+
+}  // namespace
+
+std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start, const std::vector<Point>& directions,
+                                        double reach) {
+  std::optional<Point> found;
+  double best = 0;
+  for (const Point& towards : directions) {
+    const double l = length(towards);
+    if (!(l > 0)) continue;
+    double step = reach;
+    for (int k = 0; k < kHalvings; ++k, step *= 0.5) {
+      const Point p = start + (step / l) * towards;
+      if (!sees_all(walls, p)) continue;
+      const double ratio = worst_ratio(walls, p);
+      if (found && ratio < best) break;
+      found = p, best = ratio;
+    }
+  }
+  return found ? climb(walls, *found, best, 0.25 * reach) : found;
+}
+
+}  // namespace delfront

@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What a user types: commands, flags, job files, and the answer to slips (exit 2)."""
+import unittest
+
+import case
+
+
+class Help(case.Case):
+    def test_help_shows_commands_examples_formats_and_exit_codes(self):
+        self.expect(0, "--help", says=["delfront mesh", ".stl", ".vtu", "OpenFOAM", "Exit codes"])
+        self.expect(0, "mesh", "--help", says=["Examples:", "--farfield", "--hmax,--clmax", "--set", "LENGTH:"])
+        for command in ("check", "info", "convert"):
+            self.expect(0, command, "--help", says="xample")
+
+    def test_version(self):
+        self.assertRegex(self.expect(0, "--version").stdout, r"^delfront \d+\.\d+\.\d+\n$")
+
+    def test_without_a_command_help_is_printed(self):
+        self.assertIn("First steps", self.run_delfront().stdout)
+
+
+class Slips(case.Case):
+    def test_unknown_words_name_the_nearest(self):
+        self.expect(2, "mehs", says="did you mean 'mesh'?")
+        self.expect(2, "mesh", "a.stl", "--hmxa", "5", says="did you mean '--hmax'?")
+        self.expect(2, "mesh", "a.stl", "--set", "size.hmxa=5", says="did you mean 'size.hmax'?")
+        self.expect(2, "mesh", "a.stl", "--set", "hmax", says="KEY=VALUE")
+        self.expect(2, "mesh", "a.stl", "--progress", "loud", says="auto, bar, plain, json, none")
+
+    def test_words_of_later_versions_are_said_to_be_so(self):
+        self.expect(2, "adapt", "a.vtu", says="not in this version")
+        self.expect(2, "mesh", "a.stl", "--curvature", "18", says="not in this version")
+
+    def test_wrong_values_say_what_is_allowed(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        for flag, value, says in [("--hmax", "5parsec", "unknown unit"), ("--hmax", "-1", "not positive"),
+                                  ("--growth", "1", "a number over 1"), ("--growth", "fast", "a number over 1"),
+                                  ("--units", "cm", "auto, m, mm, in, ft"), ("--max-cells", "-3", "whole number"),
+                                  ("--farfield", "cube:3", "sphere:20c"), ("--keep", "larges", "did you mean 'largest'"),
+                                  ("--stop-after", "surf", "geometry, surface, volume"), ("-j", "x", "")]:
+            self.expect(2, "mesh", "a.stl", "-o", "a.vtu", flag, value, says=says)
+        self.assertEqual(self.files(), ["a.stl"])
+
+    def test_what_is_missing_is_named(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(2, "mesh", says="no input")
+        self.expect(2, "mesh", "a.stl", says="-o grid.vtu")
+        self.expect(2, "mesh", "a.stl", "-o", "a.xyz", says=".vtu")
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--hmin", "1", "--hmax", "0.5", says="above size.hmax")
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--hmax", "2mm", says="--units")
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--output-units", "mm", says="--units")
+
+    def test_gates_are_read_before_the_work(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--require", "mindihedral > 3", says="did you mean 'min_dihedral'?")
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--require", "min_dihedral >")
+        self.assertEqual(self.files(), ["a.stl"])
+
+
+class JobFiles(case.Case):
+    def test_unknown_key_names_line_and_nearest(self):
+        self.write("case.toml", "[input]\nfiles = ['a.stl']\n[size]\nhmxa = 5\n")
+        self.expect(2, "mesh", "case.toml", "-o", "a.vtu", says="case.toml:4: unknown key 'size.hmxa' (did you mean 'size.hmax'?)")
+
+    def test_wrong_type_names_line_and_what_is_allowed(self):
+        self.write("case.toml", "[size]\n# a comment\nhmax = [1, 2]\n")
+        self.expect(2, "mesh", "case.toml", says=["case.toml:3: size.hmax: expected a length", "got a list of 2"])
+        self.write("case.json", '{\n "size": {\n  "growth": "1.2"\n }\n}')
+        self.expect(2, "mesh", "case.json", says=["case.json:3: size.growth: expected a number over 1"])
+
+    def test_not_toml_names_the_line(self):
+        self.write("case.toml", "[size]\nhmax = \n")
+        self.expect(2, "mesh", "case.toml", says=["case.toml:2", "not valid TOML"])
+
+    def test_missing_job_file(self):
+        self.expect(3, "mesh", "nothere.toml", says="nothere.toml")
+
+    def test_later_words_win(self):
+        self.write("case.toml", "[input]\nfiles = ['a.stl']\n[size]\nhmax = 1\nhmin = 0.1\ngrowth = 1.2\n")
+        result = self.expect(0, "mesh", "case.toml", "--hmax", "2", "--growth", "1.3", "--set", "size.growth=1.4",
+                             "--print-config")
+        for line in ("hmax = 2 ", "hmin = 0.1 ", "growth = 1.4 ", 'files = ["a.stl"]'):
+            self.assertIn(line, result.stdout)
+
+    def test_printed_configuration_reads_back_the_same(self):
+        flags = ["--farfield", "box:-1,-1,-1,2,2,2.5", "--keep", "-0.5,0,0", "--hmin", "1e-7", "--clmax", "5%",
+                 "--growth", "1.15", "--no-improve", "--time-limit", "2h", "--memory-limit", "3GiB", "--max-cells",
+                 "5e6", "-o", "x.su2", "-o", "foam/", "--units", "mm", "--output-units", "in", "--ascii",
+                 "--require", "min_dihedral > 8", "--set", "boundaries.wing.select=OML*", "--set",
+                 "boundaries.wing.kind=wall", "--report", "r.json", "--stop-after", "volume"]
+        first = self.expect(0, "mesh", "a b.stl", "c.obj", *flags, "--print-config").stdout
+        self.write("effective.toml", first)
+        self.assertEqual(self.expect(0, "mesh", "effective.toml", "--print-config").stdout, first)
+        self.assertEqual(self.files(), ["effective.toml"])
+
+    def test_paths_are_relative_to_the_job_file(self):
+        (self.folder / "sub").mkdir()
+        self.write("sub/box.stl", case.stl_ascii(case.box_triangles()))
+        self.write("sub/case.toml", "[input]\nfiles = ['box.stl']\n[output]\nfiles = ['box.vtu']\nreport = 'box.json'\n")
+        self.expect(0, "mesh", "sub/case.toml")
+        self.assertEqual(self.files(), ["sub", "sub/box.json", "sub/box.stl", "sub/box.vtu", "sub/case.toml"])
+
+
+if __name__ == "__main__":
+    unittest.main()

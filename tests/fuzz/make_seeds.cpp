@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// make_seeds FOLDER: small valid files of every format and encoding, FOLDER/<format>/…, for the fuzzers to start from.
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "delfront/io.hpp"
+
+namespace {
+
+using namespace delfront;
+
+void add(Mesh& mesh, CellType type, std::initializer_list<std::size_t> vertices, GroupId group) {
+  CellBlock& block = mesh.block(type);
+  for (std::size_t v : vertices) block.vertices.push_back(VertexId(v));
+  if (num_vertices(type) == 0) {
+    if (block.offsets.empty()) block.offsets.push_back(0);
+    block.offsets.push_back(block.vertices.size());
+  }
+  block.group.push_back(group);
+}
+
+Mesh grid() {
+  Mesh mesh;
+  for (std::size_t i = 0; i < 8; ++i) mesh.points.push_back({double(i % 2), double(i / 2 % 2), double(i / 4) / 3});
+  const GroupId region = mesh.add_group(3, "air"), patch = mesh.add_group(2, "the wall", "wall");
+  add(mesh, CellType::tetrahedron, {0, 1, 2, 4}, region);
+  add(mesh, CellType::hexahedron, {0, 1, 3, 2, 4, 5, 7, 6}, GroupId());
+  add(mesh, CellType::triangle, {0, 2, 1}, patch);
+  add(mesh, CellType::quad, {0, 1, 3, 2}, patch);
+  mesh.fields.push_back({"t", Field::On::vertices, CellType::vertex, 1, std::vector<double>(8, 0.5)});
+  return mesh;
+}
+
+Mesh plane() {
+  Mesh mesh;
+  mesh.dimension = 2;
+  for (std::size_t i = 0; i < 4; ++i) mesh.points.push_back({double(i % 2), double(i / 2), 0});
+  const GroupId region = mesh.add_group(2, "plane"), side = mesh.add_group(1, "side");
+  add(mesh, CellType::triangle, {0, 1, 2}, region);
+  add(mesh, CellType::line, {0, 1}, side);
+  return mesh;
+}
+
+Mesh surface() {
+  Mesh mesh;
+  for (std::size_t i = 0; i < 5; ++i) mesh.points.push_back({double(i % 2), double(i / 2), double(i) / 4});
+  const GroupId group = mesh.add_group(2, "body");
+  add(mesh, CellType::triangle, {0, 1, 2}, group);
+  add(mesh, CellType::quad, {0, 1, 3, 2}, group);
+  return mesh;
+}
+
+Mesh general_cells() {
+  Mesh mesh = surface();
+  add(mesh, CellType::polygon, {0, 1, 3, 4, 2}, mesh.add_group(2, "body"));
+  add(mesh, CellType::polyhedron, {4, 3, 0, 2, 1, 3, 0, 1, 4, 3, 1, 2, 4, 3, 2, 0, 4}, mesh.add_group(3, "cell"));
+  return mesh;
+}
+
+void write_all(const Mesh& mesh, const std::string& root, const std::string& stem) {
+  Context context;
+  for (const FormatInfo& format : formats()) {
+    if (!format.can_write || !format.can_read) continue;
+    const std::string folder = root + "/" + format.name;
+    std::filesystem::create_directories(folder);
+    for (const WriteOptions& options : {WriteOptions{.binary = true, .version = "", .compress = false},
+                                        WriteOptions{.binary = false, .version = "2.2", .compress = false},
+                                        WriteOptions{.binary = true, .version = "2.2", .compress = true},
+                                        WriteOptions{.binary = false, .version = "", .compress = false}}) {
+      const std::string name = stem + (options.binary ? "_b" : "_t") + (options.compress ? "_z" : "") + options.version;
+      try {
+        write_mesh(mesh, folder + "/" + name, context, options, format.name);
+      } catch (const std::exception&) {  // not every format holds every mesh
+      }
+    }
+  }
+}
+
+void write_text(const std::string& root, const std::string& format, const std::string& text) {
+  std::filesystem::create_directories(root + "/" + format);
+  std::ofstream(root + "/" + format + "/by_hand", std::ios::binary) << text;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: make_seeds FOLDER\n", stderr);
+    return 2;
+  }
+  const std::string root = argv[1];
+  write_all(grid(), root, "grid");
+  write_all(plane(), root, "plane");
+  write_all(surface(), root, "surface");
+  write_all(general_cells(), root, "general");
+  write_text(root, "obj", "o a\nusemtl b\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1/1 2//2 -1/3/4\nf 1 2 \\\n3\n");
+  write_text(root, "poly", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n1 1\n2 0 5\n4 1 2 3 4\n2 1 3\n1\n1 0 0 0\n0\n");
+  write_text(root, "off", "COFF # c\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2 9\n");
+  write_text(root, "stl", "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");
+  write_text(root, "vtu",
+             "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points>"
+             "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAA"
+             "AIA/AAAAAA==</DataArray></Points><Cells><DataArray Name=\"connectivity\" type=\"Int8\" format=\"ascii\">0 1 2"
+             "</DataArray><DataArray Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray Name=\"types\" "
+             "format=\"ascii\">6</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>");
+  return 0;
+}
