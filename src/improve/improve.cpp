@@ -174,7 +174,7 @@ bool Improver::thin_out(TetIndex t) {
 
 bool Improver::insert(TetIndex t) {
   if (!is_below(t, goal_)) return false;
-  if (!is_changed(operations_.insert(t, enough_))) return false;
+  if (!is_changed(operations_.insert(t, goal_, enough_))) return false;
   ++report_.points_added;
   return true;
 }

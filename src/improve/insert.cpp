@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kMaxCavity = 48;
 constexpr double kShortest = 0.45;         // edges made by an insertion, of the wanted size ...
 constexpr double kShortestAtWorst = 0.25;  // ... and where the tet is far below the goal
+constexpr double kInsertionGain = 1.5;     // of the squared sine, short of the goal: a point has to be worth it
 constexpr int kRounds = 3;                 // of growing the cavity and moving the point
 }  // namespace
 
@@ -141,8 +142,9 @@ bool LocalOperations::try_point(Point p, double bound, double enough) {
   return false;
 }
 
-bool LocalOperations::insert(TetIndex t, double enough) {
-  const double bound = kGain * quality(t);
+bool LocalOperations::insert(TetIndex t, double goal, double enough) {
+  const double now = quality(t);
+  const double bound = std::max(kGain * now, std::min(goal, kInsertionGain * now));
   const std::uint32_t* n = &c_.node[4 * t];
   const Point corner[4] = {c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3])};
   const Point centroid = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);

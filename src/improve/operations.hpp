@@ -51,9 +51,10 @@ class LocalOperations {
   /// @brief Pull a free vertex into the neighbour that leaves the best worst tet; edges stay below kLongest h.
   bool contract(VertexIndex v);
 
-  /// @brief Put a point near t into a cavity grown and a place chosen for the best worst tet; edges stay above
-  /// kShortest h. Free vertices inside of the cavity are dropped with it.
-  bool insert(TetIndex t, double enough);
+  /// @brief Put a point near t into a cavity grown and a place chosen for the best worst tet, which must reach
+  /// `goal` or be clearly better than t; edges stay above kShortest h. Free vertices inside of the cavity are dropped
+  /// with it.
+  bool insert(TetIndex t, double goal, double enough);
 
   std::size_t num_dropped = 0;  ///< vertices lost in cavities of insert()
 

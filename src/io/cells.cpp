@@ -15,8 +15,7 @@ namespace {
 constexpr std::array<int, 4> kTetFaces[] = {{0, 2, 1, -1}, {0, 1, 3, -1}, {1, 2, 3, -1}, {0, 3, 2, -1}};
 constexpr std::array<int, 4> kPyramidFaces[] = {
     {0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}};
-constexpr std::array<int, 4> kPrismFaces[] = {
-    {0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+constexpr std::array<int, 4> kPrismFaces[] = {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
 constexpr std::array<int, 4> kHexFaces[] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                             {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
@@ -87,8 +86,7 @@ std::optional<CellType> type_from_vtk(int number) {
 
 void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std::string>& notes) {
   if (!mesh.fields.empty())
-    notes.push_back(
-        fmt::format("{}: {} field(s) are left out; VTU keeps them", format, mesh.fields.size()));
+    notes.push_back(fmt::format("{}: {} field(s) are left out; VTU keeps them", format, mesh.fields.size()));
 }
 
 void TagGroups::name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind) {
@@ -100,15 +98,16 @@ void TagGroups::name(int dimension, std::int64_t tag, const std::string& name, c
 GroupId TagGroups::operator()(int dimension, std::int64_t tag) {
   const auto d = static_cast<std::size_t>(dimension);
   if (last_[d].group.is_valid() && last_[d].tag == tag) return last_[d].group;
-  std::vector<Entry>& entries = entries_[d];
-  auto it = std::lower_bound(entries.begin(), entries.end(), tag,
-                             [](const Entry& entry, std::int64_t wanted) { return entry.tag < wanted; });
-  if (it == entries.end() || it->tag != tag) {
-    mesh_.groups.push_back({fmt::format("{}_{}", role_name(mesh_, dimension), tag), dimension, "", false});
-    it = entries.insert(it, {tag, GroupId(mesh_.groups.size() - 1)});
-  }
-  last_[d] = *it;
-  return it->group;
+  const auto [it, is_new] = groups_[d].try_emplace(tag, mesh_.groups.size());
+  if (is_new) mesh_.groups.push_back({fmt::format("{}_{}", role_name(mesh_, dimension), tag), dimension, "", false});
+  last_[d] = {tag, it->second};
+  return it->second;
+}
+
+GroupId NamedPatches::operator()(std::string_view name) {
+  const auto [it, is_new] = groups_.try_emplace(std::string(name), mesh_.groups.size());
+  if (is_new) mesh_.groups.push_back({it->first, 2, "", false});
+  return it->second;
 }
 
 std::span<const std::array<int, 4>> local_faces(CellType type) {

@@ -2,9 +2,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -58,8 +61,19 @@ class TagGroups {
     GroupId group;
   };
   Mesh& mesh_;
-  std::array<std::vector<Entry>, 4> entries_;  // sorted by tag
-  std::array<Entry, 4> last_{};                // the one asked for last: tags come in runs
+  std::array<std::map<std::int64_t, GroupId>, 4> groups_;
+  std::array<Entry, 4> last_{};  // the one asked for last: tags come in runs
+};
+
+/// @brief Like mesh.add_group(2, name), for files with very many names.
+class NamedPatches {
+ public:
+  explicit NamedPatches(Mesh& mesh) : mesh_(mesh) {}
+  GroupId operator()(std::string_view name);
+
+ private:
+  Mesh& mesh_;
+  std::unordered_map<std::string, GroupId> groups_;
 };
 
 /// @brief Outward faces of a volume cell: calls `face(span)` for each.

@@ -99,7 +99,8 @@ void take_run(std::span<const Half> run, const Halves& halves, FoamFaces& faces)
   std::size_t num_cells = 0;
   while (num_cells < run.size() && run[num_cells].cell != kNone) ++num_cells;
   if (num_cells > 2)
-    throw InputError(fmt::format("a face of cell {} belongs to {} cells; the grid is not conforming", run[0].cell, num_cells));
+    throw InputError(
+        fmt::format("a face of cell {} belongs to {} cells; the grid is not conforming", run[0].cell, num_cells));
   if (num_cells == 0) {
     faces.num_loose += run.size();
     return;
@@ -128,8 +129,7 @@ void double_baffles(const Mesh& mesh, const std::vector<std::uint32_t>& other_lo
     if (faces.region_of(face.owner) != faces.region_of(face.neighbour)) separates[face.group] = true;
   }
   for (std::size_t group = 0; group < mesh.groups.size(); ++group)
-    faces.is_baffle[group] =
-        has_inner[group] && !separates[group] && mesh.groups[GroupId(group)].kind != "interface";
+    faces.is_baffle[group] = has_inner[group] && !separates[group] && mesh.groups[GroupId(group)].kind != "interface";
   std::vector<FoamFace> kept;
   for (std::size_t i = 0; i < faces.internal.size(); ++i) {
     const FoamFace& face = faces.internal[i];
@@ -153,8 +153,8 @@ void double_baffles(const Mesh& mesh, const std::vector<std::uint32_t>& other_lo
 }  // namespace
 
 std::int64_t FoamFaces::region_of(std::size_t cell) const {
-  const auto block = static_cast<std::size_t>(std::upper_bound(first_cell.begin(), first_cell.end(), cell) -
-                                              first_cell.begin() - 1);
+  const auto block =
+      static_cast<std::size_t>(std::upper_bound(first_cell.begin(), first_cell.end(), cell) - first_cell.begin() - 1);
   return group_of(*blocks[block], cell - first_cell[block]);
 }
 
@@ -187,7 +187,8 @@ FoamFaces build_foam_faces(const Mesh& mesh, Context& context) {
       return std::tie(a.second, a.third, a.cell, a.local) < std::tie(b.second, b.third, b.cell, b.local);
     });
     for (std::size_t begin = 0, end = 0; begin < bucket.size(); begin = end) {
-      while (end < bucket.size() && bucket[end].second == bucket[begin].second && bucket[end].third == bucket[begin].third)
+      while (end < bucket.size() && bucket[end].second == bucket[begin].second &&
+             bucket[end].third == bucket[begin].third)
         ++end;
       const std::size_t before = faces.internal.size();
       take_run(bucket.subspan(begin, end - begin), halves, faces);

@@ -23,12 +23,12 @@ struct FoamFace {
 /// @brief What an OpenFOAM mesh is made of: cells numbered over the volume blocks, internal faces in upper-triangular
 /// order, boundary faces in no order yet.
 struct FoamFaces {
-  std::vector<const CellBlock*> blocks;    ///< volume blocks
-  std::vector<std::size_t> first_cell;     ///< of each block, and the total
-  std::vector<FoamFace> internal;          ///< sorted by (owner, neighbour)
+  std::vector<const CellBlock*> blocks;  ///< volume blocks
+  std::vector<std::size_t> first_cell;   ///< of each block, and the total
+  std::vector<FoamFace> internal;        ///< sorted by (owner, neighbour)
   std::vector<FoamFace> boundary;
-  std::vector<bool> is_baffle;             ///< by group: inner faces with the same region on both sides, made double
-  std::size_t num_loose = 0;               ///< stored faces that are no face of a cell
+  std::vector<bool> is_baffle;  ///< by group: inner faces with the same region on both sides, made double
+  std::size_t num_loose = 0;    ///< stored faces that are no face of a cell
 
   std::size_t num_cells() const { return first_cell.back(); }
   /// @brief The region (group index) of a cell, or -1.

@@ -36,8 +36,8 @@ void check_folder(const std::string& path, const std::string& folder) {
   const fs::file_status status = fs::status(folder, error);
   if (fs::is_directory(status)) {
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
-      throw IoError(fmt::format("cannot write {}: no permission to write in folder {} ({})", path, folder,
-                                reason(errno)));
+      throw IoError(
+          fmt::format("cannot write {}: no permission to write in folder {} ({})", path, folder, reason(errno)));
     return;
   }
   fs::path part;
@@ -45,8 +45,8 @@ void check_folder(const std::string& path, const std::string& folder) {
     part /= piece;
     const fs::file_status here = fs::status(part, error);
     if (fs::exists(here) && !fs::is_directory(here))
-      throw IoError(fmt::format("cannot write {}: {} is a file, not a folder; choose another output path", path,
-                                part.string()));
+      throw IoError(
+          fmt::format("cannot write {}: {} is a file, not a folder; choose another output path", path, part.string()));
     if (!fs::exists(here))
       throw IoError(fmt::format("cannot write {}: folder {} does not exist ({}); make it first", path, part.string(),
                                 error ? error.message() : reason(ENOENT)));
@@ -162,8 +162,8 @@ void Replacement::make_file() {
     }
     if (errno != EEXIST) break;
   }
-  throw IoError(fmt::format("cannot write {}: no temporary file can be made beside it: {}", shown_path_,
-                            reason(errno)));
+  throw IoError(
+      fmt::format("cannot write {}: no temporary file can be made beside it: {}", shown_path_, reason(errno)));
 }
 
 void Replacement::make_folder() {
@@ -177,8 +177,8 @@ void Replacement::make_folder() {
     }
     if (errno != EEXIST) break;
   }
-  throw IoError(fmt::format("cannot write {}: no temporary folder can be made beside it: {}", shown_path_,
-                            reason(errno)));
+  throw IoError(
+      fmt::format("cannot write {}: no temporary folder can be made beside it: {}", shown_path_, reason(errno)));
 }
 
 void Replacement::commit() {

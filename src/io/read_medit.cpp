@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Medit (.mesh, ASCII), as MMG, TetGen and libMeshb write it. References become groups named by the comments that
-// write_medit leaves ("#delfront <dimension> <reference> <sides> <kind or -> <name>"), else "patch_<ref>", "region_<ref>".
-// Keywords that say nothing about the mesh here (corners, ridges, normals, …) are skipped.
+// write_medit leaves ("#delfront <dimension> <reference> <sides> <kind or -> <name>"), else "patch_<ref>",
+// "region_<ref>". Keywords that say nothing about the mesh here (corners, ridges, normals, …) are skipped.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -21,10 +21,11 @@ struct Keyword {
   std::string_view name;
   CellType type;
 };
-constexpr Keyword kKeywords[] = {
-    {"Edges", CellType::line},           {"Triangles", CellType::triangle}, {"Quadrilaterals", CellType::quad},
-    {"Tetrahedra", CellType::tetrahedron}, {"Pyramids", CellType::pyramid},   {"Prisms", CellType::prism},
-    {"Pentahedra", CellType::prism},     {"Hexahedra", CellType::hexahedron}, {"Hexaedra", CellType::hexahedron}};
+constexpr Keyword kKeywords[] = {{"Edges", CellType::line},          {"Triangles", CellType::triangle},
+                                 {"Quadrilaterals", CellType::quad}, {"Tetrahedra", CellType::tetrahedron},
+                                 {"Pyramids", CellType::pyramid},    {"Prisms", CellType::prism},
+                                 {"Pentahedra", CellType::prism},    {"Hexahedra", CellType::hexahedron},
+                                 {"Hexaedra", CellType::hexahedron}};
 
 class MeditReader {
  public:

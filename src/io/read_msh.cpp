@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <unordered_map>
 
@@ -38,7 +39,8 @@ class MshReader {
   Mesh read() {
     read_format();
     for (std::string_view word = cursor_.next(); !word.empty(); word = cursor_.next()) {
-      if (!word.starts_with('$')) cursor_.fail(fmt::format("'{}' where a section ($Name) should begin", word.substr(0, 40)));
+      if (!word.starts_with('$'))
+        cursor_.fail(fmt::format("'{}' where a section ($Name) should begin", word.substr(0, 40)));
       read_section(std::string(word.substr(1)));
     }
     if (cells_.empty()) throw InputError(fmt::format("{}: the MSH file has no elements", cursor_.path()));
@@ -60,7 +62,8 @@ class MshReader {
     if (!is_text_) {
       const auto one = cursor_.binary<std::int32_t>("the byte order mark");
       cursor_.swap_bytes = one != 1;
-      if (one != 1 && Cursor::swapped(one) != 1) cursor_.fail_in_binary("the byte order mark is not 1; the file is damaged");
+      if (one != 1 && Cursor::swapped(one) != 1)
+        cursor_.fail_in_binary("the byte order mark is not 1; the file is damaged");
     }
     end_section("MeshFormat");
   }
@@ -98,7 +101,10 @@ class MshReader {
   }
 
   // Numbers of either encoding.
-  std::int64_t int32(const char* what) { return is_text_ ? cursor_.integer(what) : cursor_.binary<std::int32_t>(what); }
+  std::int64_t int32(const char* what) {
+    constexpr std::int64_t kHigh = std::numeric_limits<std::int32_t>::max();
+    return is_text_ ? cursor_.integer_in(what, -kHigh, kHigh) : cursor_.binary<std::int32_t>(what);
+  }
   std::int64_t int64(const char* what) { return is_text_ ? cursor_.integer(what) : cursor_.binary<std::int64_t>(what); }
   double real(const char* what) { return is_text_ ? cursor_.number(what) : cursor_.binary<double>(what); }
   std::size_t count64(const char* what, std::size_t text_bytes, std::size_t binary_bytes) {
@@ -273,11 +279,13 @@ class MshReader {
   void finish() {
     check_finite(mesh_, cursor_.path());
     if (!is_dense_)
-      for (std::size_t i = 0; i < node_tags_.size(); ++i) vertex_of_tag_.emplace(node_tags_[i], static_cast<std::uint32_t>(i));
+      for (std::size_t i = 0; i < node_tags_.size(); ++i)
+        vertex_of_tag_.emplace(node_tags_[i], static_cast<std::uint32_t>(i));
     const auto by_tag = [](const RawCell& a, const RawCell& b) { return a.tag < b.tag; };
     if (!std::is_sorted(cells_.begin(), cells_.end(), by_tag)) std::stable_sort(cells_.begin(), cells_.end(), by_tag);
     std::array<bool, 4> has_physical{};
-    for (const RawCell& cell : cells_) has_physical[static_cast<std::size_t>(dimension(cell.type))] |= cell.physical != 0;
+    for (const RawCell& cell : cells_)
+      has_physical[static_cast<std::size_t>(dimension(cell.type))] |= cell.physical != 0;
     set_dimension();
     TagGroups groups(mesh_);
     for (std::size_t d = 4; d-- > 0;)

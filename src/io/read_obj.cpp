@@ -87,8 +87,8 @@ class ObjReader {
     for (std::string_view token = next_corner(); !token.empty(); token = next_corner())
       corners_.push_back(corner(token));
     if (corners_.size() - num_before < 3)
-      cursor_.fail_at(begin, fmt::format("a face needs three corners or more, this has {}",
-                                         corners_.size() - num_before));
+      cursor_.fail_at(begin,
+                      fmt::format("a face needs three corners or more, this has {}", corners_.size() - num_before));
     offsets_.push_back(corners_.size());
   }
 
@@ -149,9 +149,10 @@ class ObjReader {
 
   void add_faces() {
     const std::size_t label = choose_label();
+    NamedPatches patches(mesh_);
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       if (!has_faces(i)) continue;
-      const GroupId group = mesh_.add_group(2, std::string(runs_[i].names[label]));
+      const GroupId group = patches(runs_[i].names[label]);
       for (std::size_t face = runs_[i].first_face; face < end_of(i); ++face)
         add_face(mesh_, {corners_.data() + offsets_[face], offsets_[face + 1] - offsets_[face]}, group);
     }

@@ -30,8 +30,8 @@ void read_face(Cursor& cursor, Mesh& mesh, std::vector<VertexId>& corners) {
   if (n < 3) cursor.fail(fmt::format("a face needs three corners or more, this has {}", n));
   corners.clear();
   for (std::size_t k = 0; k < n; ++k)
-    corners.push_back(VertexId(static_cast<std::size_t>(
-        cursor.integer_in("vertex", 0, static_cast<std::int64_t>(mesh.points.size()) - 1))));
+    corners.push_back(VertexId(
+        static_cast<std::size_t>(cursor.integer_in("vertex", 0, static_cast<std::int64_t>(mesh.points.size()) - 1))));
   cursor.skip_line();  // colour
   add_face(mesh, corners, GroupId(0));
 }

@@ -118,10 +118,12 @@ class PlyReader {
       Scalar type;
     };
     static constexpr Name kNames[] = {
-        {"char", Scalar::int8},     {"int8", Scalar::int8},       {"uchar", Scalar::uint8},    {"uint8", Scalar::uint8},
-        {"short", Scalar::int16},   {"int16", Scalar::int16},     {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},
-        {"int", Scalar::int32},     {"int32", Scalar::int32},     {"uint", Scalar::uint32},    {"uint32", Scalar::uint32},
-        {"float", Scalar::float32}, {"float32", Scalar::float32}, {"double", Scalar::float64}, {"float64", Scalar::float64}};
+        {"char", Scalar::int8},      {"int8", Scalar::int8},       {"uchar", Scalar::uint8},
+        {"uint8", Scalar::uint8},    {"short", Scalar::int16},     {"int16", Scalar::int16},
+        {"ushort", Scalar::uint16},  {"uint16", Scalar::uint16},   {"int", Scalar::int32},
+        {"int32", Scalar::int32},    {"uint", Scalar::uint32},     {"uint32", Scalar::uint32},
+        {"float", Scalar::float32},  {"float32", Scalar::float32}, {"double", Scalar::float64},
+        {"float64", Scalar::float64}};
     for (const Name& known : kNames)
       if (known.name == word) return known.type;
     cursor_.fail(fmt::format("'{}' is no PLY type", word.substr(0, 40)));
@@ -231,7 +233,8 @@ class PlyReader {
         skip(property);
       }
     }
-    if (corners < 3) cursor_.fail_in_binary(fmt::format("face {} has {} corners; three or more are needed", face, corners));
+    if (corners < 3)
+      cursor_.fail_in_binary(fmt::format("face {} has {} corners; three or more are needed", face, corners));
     if (offsets_.empty()) offsets_.push_back(0);
     offsets_.push_back(corners_.size());
     patches_.push_back(patch);

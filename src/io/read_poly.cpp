@@ -40,7 +40,8 @@ class PolyReader {
     for (std::size_t i = 0; i < n; ++i) {
       const std::int64_t index = cursor_.integer("index of a point");
       if (i == 0) first_index_ = index;
-      if (index - first_index_ != static_cast<std::int64_t>(i)) cursor_.fail("points are not numbered one after the other");
+      if (index - first_index_ != static_cast<std::int64_t>(i))
+        cursor_.fail("points are not numbered one after the other");
       Point p;
       for (int k = 0; k < 3; ++k) p[k] = cursor_.number("coordinate of a point");
       cursor_.skip_line();
@@ -63,8 +64,9 @@ class PolyReader {
       if (corners.size() >= 3) {
         rings.push_back(std::move(corners));
       } else if (corners.size() != 2 || !split_by_edge(rings, corners[0], corners[1])) {
-        cursor_.fail("a point or an edge inside a facet that does not join two of its corners is not read; split the "
-                     "facet");
+        cursor_.fail(
+            "a point or an edge inside a facet that does not join two of its corners is not read; split the "
+            "facet");
       }
     }
     for (const std::vector<VertexId>& ring : rings) add_face(mesh_, ring, group);
@@ -111,7 +113,8 @@ class PolyReader {
       cursor_.skip_line();
       for (std::size_t i = 0; i < n && !cursor_.at_end(); ++i) cursor_.skip_line();
       if (n > 0)
-        context_.warn(fmt::format("{}: {} {} point(s) are not used; give domain.seeds instead", cursor_.path(), n, what));
+        context_.warn(
+            fmt::format("{}: {} {} point(s) are not used; give domain.seeds instead", cursor_.path(), n, what));
     }
   }
 

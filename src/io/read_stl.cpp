@@ -37,8 +37,9 @@ bool is_text(std::string_view bytes) {
 /// Facets with a coordinate that is not finite, gathered to be named together.
 class BadFacets {
  public:
+  bool is_listing() const { return count_ < kMaxListed; }  // finding a line takes time
   void add(std::size_t facet, std::size_t line, const std::array<Point, 3>& corners) {
-    if (++count_ <= 5) {
+    if (++count_ <= kMaxListed) {
       list_ += fmt::format("{}{}", count_ > 1 ? ", " : "", facet);
       if (line > 0) list_ += fmt::format(" (line {})", line);
     }
@@ -53,11 +54,12 @@ class BadFacets {
     throw InputError(
         fmt::format("{}: {} of {} facets have a coordinate that is not a finite number: facet {}{} (counted from 0); "
                     "remove them or export again",
-                    path, count_, num_facets, list_, count_ > 5 ? ", …" : ""),
+                    path, count_, num_facets, list_, count_ > kMaxListed ? ", …" : ""),
         std::move(places_));
   }
 
  private:
+  static constexpr std::size_t kMaxListed = 5;
   std::size_t count_ = 0;
   std::string list_;
   std::vector<Place> places_;
@@ -71,27 +73,28 @@ void append_facet(Mesh& mesh, CellBlock& triangles, const std::array<Point, 3>& 
   triangles.group.push_back(group);
 }
 
-GroupId group_of_solid(Mesh& mesh, std::string_view name) {
-  if (!name.empty()) return mesh.add_group(2, std::string(name));
-  mesh.groups.push_back({"", 2, "", false});  // unnamed solids stay apart
+GroupId add_unnamed(Mesh& mesh) {  // unnamed solids stay apart
+  mesh.groups.push_back({"", 2, "", false});
   return GroupId(mesh.groups.size() - 1);
 }
 
 /// How many facets to read: the header's word checked against the size of the file.
 std::size_t facets_to_read(std::string_view bytes, const std::string& path, Context& context) {
   if (bytes.size() < kPreamble)
-    throw InputError(fmt::format("{}: neither ASCII STL (does not begin with 'solid') nor binary STL (at least {} "
-                                 "bytes, the file has {})",
-                                 path, kPreamble, bytes.size()));
+    throw InputError(
+        fmt::format("{}: neither ASCII STL (does not begin with 'solid') nor binary STL (at least {} "
+                    "bytes, the file has {})",
+                    path, kPreamble, bytes.size()));
   const std::uint64_t claimed = claimed_facets(bytes);
   const std::size_t present = (bytes.size() - kPreamble) / kFacetSize;
   if (claimed > present)
-    throw InputError(fmt::format("{}: the binary STL header says {} facets ({} bytes), but the file has {} bytes, "
-                                 "room for {}; it is truncated or damaged, export it again",
-                                 path, claimed, kPreamble + kFacetSize * claimed, bytes.size(), present));
+    throw InputError(
+        fmt::format("{}: the binary STL header says {} facets ({} bytes), but the file has {} bytes, "
+                    "room for {}; it is truncated or damaged, export it again",
+                    path, claimed, kPreamble + kFacetSize * claimed, bytes.size(), present));
   if (claimed == 0 && present > 0) {
-    context.warn(fmt::format("{}: the binary STL header says 0 facets; {} were read by the size of the file", path,
-                             present));
+    context.warn(
+        fmt::format("{}: the binary STL header says 0 facets; {} were read by the size of the file", path, present));
     return present;
   }
   if (kPreamble + kFacetSize * claimed < bytes.size())
@@ -111,7 +114,8 @@ Mesh read_binary(std::string_view bytes, const std::string& path, Context& conte
   mesh.points.reserve(3 * num_facets);
   triangles.vertices.reserve(3 * num_facets);
   triangles.group.reserve(num_facets);
-  const GroupId group = group_of_solid(mesh, name.substr(0, name.find('\0')));
+  name = name.substr(0, name.find('\0'));
+  const GroupId group = name.empty() ? add_unnamed(mesh) : mesh.add_group(2, std::string(name));
   BadFacets bad;
   for (std::size_t facet = 0; facet < num_facets; ++facet) {
     if (facet % kCheckEvery == 0) context.check_limits();
@@ -130,7 +134,7 @@ Mesh read_binary(std::string_view bytes, const std::string& path, Context& conte
 class TextReader {
  public:
   TextReader(std::string_view bytes, const std::string& path, Context& context)
-      : cursor_(bytes, path), context_(context) {}
+      : cursor_(bytes, path), context_(context), patches_(mesh_) {}
 
   Mesh read() {
     for (std::string_view word = cursor_.next(); !word.empty(); word = cursor_.next()) take(word);
@@ -154,7 +158,8 @@ class TextReader {
       end_facet();
     } else if (equal_ignoring_case(word, "solid")) {
       if (in_facet_) cursor_.fail(fmt::format("'solid' in the middle of facet {}", num_facets_));
-      group_ = group_of_solid(mesh_, cursor_.rest_of_line());
+      const std::string_view name = cursor_.rest_of_line();
+      group_ = name.empty() ? add_unnamed(mesh_) : patches_(name);
       in_solid_ = true;
     } else if (equal_ignoring_case(word, "endsolid")) {
       if (in_facet_) cursor_.fail(fmt::format("'endsolid' in the middle of facet {}", num_facets_));
@@ -163,20 +168,21 @@ class TextReader {
     } else if (equal_ignoring_case(word, "color")) {
       cursor_.skip_line();
     } else if (!equal_ignoring_case(word, "outer") && !equal_ignoring_case(word, "loop")) {
-      cursor_.fail(fmt::format("'{}' is no word of an STL file; the file is damaged or of another format",
-                               word.substr(0, 40)));
+      cursor_.fail(
+          fmt::format("'{}' is no word of an STL file; the file is damaged or of another format", word.substr(0, 40)));
     }
   }
 
   [[noreturn]] void fail_truncated() const {
-    cursor_.fail(fmt::format("the file ends in the middle of a facet, after {} whole ones; it is truncated, export it "
-                             "again",
-                             num_facets_));
+    cursor_.fail(
+        fmt::format("the file ends in the middle of a facet, after {} whole ones; it is truncated, export it "
+                    "again",
+                    num_facets_));
   }
 
   void begin_facet() {
     if (in_facet_) cursor_.fail(fmt::format("'facet' in the middle of facet {}: 'endfacet' is missing", num_facets_));
-    if (!group_.is_valid()) group_ = group_of_solid(mesh_, "");
+    if (!group_.is_valid()) group_ = add_unnamed(mesh_);
     if (num_facets_ % kCheckEvery == 0) context_.check_limits();
     in_facet_ = true;
     num_corners_ = 0;
@@ -199,7 +205,7 @@ class TextReader {
     if (!in_facet_ || num_corners_ != 3)
       cursor_.fail(fmt::format("facet {} has {} vertices, not 3", num_facets_, in_facet_ ? num_corners_ : 0));
     if (!is_finite(corners_[0]) || !is_finite(corners_[1]) || !is_finite(corners_[2]))
-      bad_.add(num_facets_, cursor_.line_of(begin_), corners_);
+      bad_.add(num_facets_, bad_.is_listing() ? cursor_.line_of(begin_) : 0, corners_);
     append_facet(mesh_, mesh_.block(CellType::triangle), corners_, group_);
     ++num_facets_;
     in_facet_ = false;
@@ -208,6 +214,7 @@ class TextReader {
   Cursor cursor_;
   Context& context_;
   Mesh mesh_;
+  NamedPatches patches_;
   GroupId group_;
   BadFacets bad_;
   std::array<Point, 3> corners_;

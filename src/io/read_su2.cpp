@@ -20,7 +20,8 @@ class Su2Reader {
 
   Mesh read() {
     while (!cursor_.at_end()) take_line();
-    if (mesh_.top_dimension() < 0) throw InputError(fmt::format("{}: the SU2 file has no elements (NELEM)", cursor_.path()));
+    if (mesh_.top_dimension() < 0)
+      throw InputError(fmt::format("{}: the SU2 file has no elements (NELEM)", cursor_.path()));
     check_indices();
     check_finite(mesh_, cursor_.path());
     return std::move(mesh_);

@@ -21,6 +21,7 @@ namespace delfront {
 namespace {
 
 constexpr int kPolyVertex = 2, kPolyLine = 4, kStrip = 6, kPixel = 8, kVoxel = 11, kPolyhedron = 42;
+constexpr std::size_t kMaxComponents = 256;  // pieces without an array are filled up: this bounds by how much
 
 /// One array over all pieces.
 struct Data {
@@ -193,8 +194,8 @@ class VtkReader {
     const std::optional<CellType> type =
         number >= 0 && number < 256 ? type_from_vtk(static_cast<int>(number)) : std::nullopt;
     if (!type)
-      arrays_.fail(cells, fmt::format("cell {} has the VTK type {}, which is not supported; linear cells are", cell,
-                                      number));
+      arrays_.fail(cells,
+                   fmt::format("cell {} has the VTK type {}, which is not supported; linear cells are", cell, number));
     if (corners_.size() != static_cast<std::size_t>(num_vertices(*type)))
       arrays_.fail(cells, fmt::format("cell {} is a {} with {} vertices", cell, name_of(*type), corners_.size()));
     add(*type, corners_);
@@ -231,8 +232,10 @@ class VtkReader {
       if (child.name != "DataArray" || name.empty() || child.get("type") == "String") continue;
       std::vector<double> values = arrays_.reals(child);
       const std::size_t components = std::max<std::size_t>(attribute_count(child, "NumberOfComponents"), 1);
+      if (components > kMaxComponents) arrays_.fail(child, fmt::format("{} components are not supported", components));
       if (values.size() / components != count || values.size() % components != 0)
-        arrays_.fail(child, fmt::format("{} numbers for {} entries of {} components", values.size(), count, components));
+        arrays_.fail(child,
+                     fmt::format("{} numbers for {} entries of {} components", values.size(), count, components));
       if (count == 0) continue;
       Data& data = into[name];
       if (!data.values.empty() && data.components != static_cast<int>(components))

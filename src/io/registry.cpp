@@ -82,14 +82,16 @@ const Format& find_format(const std::string& path, const std::string& name, bool
   if (!name.empty()) {
     std::vector<std::string> names;
     for (const Format& format : table()) names.push_back(format.name);
-    throw UsageError(fmt::format("unknown format '{}': {}formats are {}", name, hint(name, names), fmt::join(names, " ")));
+    throw UsageError(
+        fmt::format("unknown format '{}': {}formats are {}", name, hint(name, names), fmt::join(names, " ")));
   }
   const std::vector<std::string> known = known_extensions(to_write);
   const std::string extension = extension_of(path);
   throw UsageError(fmt::format(
       "{}: {}; {}types that can be {}: {}{} (or name one with --format)", path,
       extension.empty() ? "the name has no extension that says its type" : fmt::format("unknown type '{}'", extension),
-      hint(extension, known), doing, fmt::join(known, " "), to_write ? " (a name ending in / is an OpenFOAM case)" : ""));
+      hint(extension, known), doing, fmt::join(known, " "),
+      to_write ? " (a name ending in / is an OpenFOAM case)" : ""));
 }
 
 }  // namespace

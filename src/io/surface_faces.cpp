@@ -58,10 +58,12 @@ SurfaceFaces::SurfaceFaces(const Mesh& mesh, const char* format, std::vector<std
     if (dimension(mesh.blocks[b].type) == 2)
       for (std::uint32_t cell = 0; cell < mesh.blocks[b].size(); ++cell) faces_.push_back({b, cell});
   if (faces_.empty())
-    throw InputError(fmt::format("{} holds faces only, and this mesh has none; write a volume format (vtu, msh)", format));
+    throw InputError(
+        fmt::format("{} holds faces only, and this mesh has none; write a volume format (vtu, msh)", format));
   std::stable_sort(faces_.begin(), faces_.end(), [this](Face a, Face b) { return group(a).value < group(b).value; });
   const std::size_t volumes = mesh.num_cells_of_dimension(3);
-  if (volumes > 0) notes.push_back(fmt::format("{}: {} volume cells are left out, faces only are written", format, volumes));
+  if (volumes > 0)
+    notes.push_back(fmt::format("{}: {} volume cells are left out, faces only are written", format, volumes));
   note_left_out_fields(mesh, format, notes);
   if (volumes == 0) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i) points_.push_back(VertexId(i));

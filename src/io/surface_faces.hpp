@@ -35,6 +35,7 @@ class SurfaceFaces {
 };
 
 /// @brief A planar polygon as triangles that are not flat where the polygon allows it: ears, the best shaped first.
+/// Corners that lie straight between their neighbours block the ears they would make flat, so none is.
 /// @par Cost  O(n^3), n = corners
 std::vector<std::array<VertexId, 3>> split_polygon(const Mesh& mesh, std::span<const VertexId> corners);
 

@@ -90,9 +90,9 @@ VtkArrays::VtkArrays(const XmlElement& file, std::string_view bytes, std::string
 void VtkArrays::fail(const XmlElement& where, const std::string& message) const {
   const std::size_t at = where.name.empty() ? 0 : static_cast<std::size_t>(where.name.data() - bytes_.data());
   const std::string name = where.get("Name");
-  Cursor(bytes_, path_).fail_at(
-      at, name.empty() ? fmt::format("<{}>: {}", where.name.substr(0, 40), message)
-                       : fmt::format("array '{}': {}", name.substr(0, 80), message));
+  Cursor(bytes_, path_)
+      .fail_at(at, name.empty() ? fmt::format("<{}>: {}", where.name.substr(0, 40), message)
+                                : fmt::format("array '{}': {}", name.substr(0, 80), message));
 }
 
 std::uint64_t VtkArrays::header_word(std::string_view raw, std::size_t index) const {
@@ -118,16 +118,18 @@ std::string VtkArrays::decode_plain(const XmlElement& array, std::string_view da
   const std::string header = decode_base64(data.substr(0, base64_length(header_size_)), header_size_);
   if (header.size() < header_size_) fail(array, "the file ends before its data; it is truncated");
   const std::uint64_t size = header_word(header, 0);
-  if (size > data.size()) fail(array, fmt::format("{} bytes are announced, fewer are there; the file is truncated", size));
+  if (size > data.size())
+    fail(array, fmt::format("{} bytes are announced, fewer are there; the file is truncated", size));
   std::string whole = decode_base64(data, header_size_ + size);
   if (whole.size() == header_size_ && size > 0) {  // header and data were encoded apart
     whole = decode_base64(data.substr(std::min(base64_length(header_size_), data.size())), size);
-    if (whole.size() < size) fail(array, fmt::format("{} bytes are announced, {} are there; the file is truncated", size, whole.size()));
+    if (whole.size() < size)
+      fail(array, fmt::format("{} bytes are announced, {} are there; the file is truncated", size, whole.size()));
     return whole;
   }
   if (whole.size() < header_size_ + size)
-    fail(array, fmt::format("{} bytes are announced, {} are there; the file is truncated", size,
-                            whole.size() - header_size_));
+    fail(array,
+         fmt::format("{} bytes are announced, {} are there; the file is truncated", size, whole.size() - header_size_));
   return whole.substr(header_size_);
 }
 
@@ -142,8 +144,8 @@ std::string VtkArrays::decode_compressed(const XmlElement& array, std::string_vi
   const std::size_t head_size = header_size_ * (3 + num_blocks);
   const std::size_t head_length = is_base64 ? base64_length(head_size) : head_size;
   if (head_length > data.size()) fail_short();
-  const std::string head = is_base64 ? decode_base64(data.substr(0, head_length), head_size)
-                                     : std::string(data.substr(0, head_length));
+  const std::string head =
+      is_base64 ? decode_base64(data.substr(0, head_length), head_size) : std::string(data.substr(0, head_length));
   if (head.size() < head_size) fail_short();
   const std::string decoded = is_base64 ? decode_base64(data.substr(head_length)) : std::string();
   std::string_view packed = is_base64 ? std::string_view(decoded) : data.substr(head_length);

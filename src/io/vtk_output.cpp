@@ -33,14 +33,11 @@ T at(std::string_view piece, std::size_t i) {
 VtkOutput::VtkOutput(Output& out, const WriteOptions& options, const std::string& type)
     : out_(out), is_text_(!options.binary), compress_(options.binary && options.compress) {
   out_.text("<?xml version=\"1.0\"?>\n");
-  out_.text(fmt::format(
-      "<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"{}>\n", type,
-      compress_ ? " compressor=\"vtkZLibDataCompressor\"" : ""));
+  out_.text(fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"{}>\n",
+                        type, compress_ ? " compressor=\"vtkZLibDataCompressor\"" : ""));
 }
 
-void VtkOutput::open(const std::string& tag) {
-  out_.text(fmt::format("{:{}}<{}>\n", "", depth_++, tag));
-}
+void VtkOutput::open(const std::string& tag) { out_.text(fmt::format("{:{}}<{}>\n", "", depth_++, tag)); }
 
 void VtkOutput::close(const std::string& tag) { out_.text(fmt::format("{:{}}</{}>\n", "", --depth_, tag)); }
 
@@ -48,8 +45,8 @@ void VtkOutput::line(const std::string& text) { out_.text(fmt::format("{:{}}{}\n
 
 void VtkOutput::add(const char* type, std::size_t size, const std::string& name, int components,
                     std::vector<std::string_view> pieces) {
-  const std::string head = fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"", type,
-                                       escape_xml(name), components);
+  const std::string head =
+      fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"", type, escape_xml(name), components);
   if (is_text_) {
     line(head + " format=\"ascii\">");
     write_text(type, size, pieces);

@@ -56,7 +56,8 @@ struct DefectData {
   void add_point(Point p) { points.insert(points.end(), {p.x, p.y, p.z}); }
 };
 
-void add_triangles(const Finding& finding, std::int32_t index, std::int32_t kind, const Mesh& surface, DefectData& data) {
+void add_triangles(const Finding& finding, std::int32_t index, std::int32_t kind, const Mesh& surface,
+                   DefectData& data) {
   const CellBlock* block = surface.find_block(CellType::triangle);
   if (!block) return;
   std::vector<std::uint32_t> ids;
@@ -77,7 +78,8 @@ DefectData gather(const std::vector<Finding>& findings, const Mesh* surface) {
   DefectData data;
   std::int32_t index = 0;
   for (const Finding& finding : findings) {
-    const std::int32_t kind = data.kinds.emplace(finding.kind, static_cast<std::int32_t>(data.kinds.size())).first->second;
+    const std::int32_t kind =
+        data.kinds.emplace(finding.kind, static_cast<std::int32_t>(data.kinds.size())).first->second;
     for (const Place& place : finding.places) {
       data.add_point(is_finite(place.at) ? place.at : Point{});
       data.places.add(kind, finding, index, place.ids.empty() ? -1 : std::int64_t{place.ids[0]});
@@ -86,7 +88,8 @@ DefectData gather(const std::vector<Finding>& findings, const Mesh* surface) {
   }
   index = 0;
   for (const Finding& finding : findings) {
-    if (surface && names_triangles(finding.kind)) add_triangles(finding, index, data.kinds[finding.kind], *surface, data);
+    if (surface && names_triangles(finding.kind))
+      add_triangles(finding, index, data.kinds[finding.kind], *surface, data);
     ++index;
   }
   return data;
@@ -109,14 +112,16 @@ void write_vtp(const DefectData& data, Output& out) {
   if (!data.kinds.empty()) {
     vtk.open("FieldData");
     for (const auto& [kind, id] : data.kinds)
-      vtk.line(fmt::format("<DataArray type=\"Int32\" Name=\"kind:{}\" NumberOfComponents=\"1\" NumberOfTuples=\"1\" "
-                           "format=\"ascii\">{}</DataArray>",
-                           escape_xml(kind), id));
+      vtk.line(
+          fmt::format("<DataArray type=\"Int32\" Name=\"kind:{}\" NumberOfComponents=\"1\" NumberOfTuples=\"1\" "
+                      "format=\"ascii\">{}</DataArray>",
+                      escape_xml(kind), id));
     vtk.close("FieldData");
   }
-  vtk.open(fmt::format("Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-                       "NumberOfPolys=\"{}\"",
-                       data.points.size() / 3, num_places, num_triangles));
+  vtk.open(
+      fmt::format("Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+                  "NumberOfPolys=\"{}\"",
+                  data.points.size() / 3, num_places, num_triangles));
   Columns of_points = data.places, of_cells = data.places;
   of_points.append(data.corners);
   of_cells.append(data.triangles);

@@ -203,7 +203,8 @@ void write_elements4(MshOutput& msh, const std::vector<Batch>& batches) {
   std::int64_t total = 0;
   for (const Batch& batch : batches) total += static_cast<std::int64_t>(batch.cells.size());
   msh.text("$Elements\n");
-  for (std::int64_t value : {static_cast<std::int64_t>(batches.size()), total, std::int64_t{1}, total}) msh.int64(value);
+  for (std::int64_t value : {static_cast<std::int64_t>(batches.size()), total, std::int64_t{1}, total})
+    msh.int64(value);
   msh.end_line();
   for (const Batch& batch : batches) {
     msh.int32(dimension(batch.block->type));

@@ -34,16 +34,18 @@ std::string patch_type(const Group& group, std::vector<std::string>& notes) {
   if (group.kind == "wall" || group.kind == "symmetry" || group.kind == "empty" || group.kind == "wedge")
     return group.kind;
   if (group.kind == "cyclic")
-    notes.push_back(fmt::format("OpenFOAM: patch \"{}\" is written as type patch; cyclic needs its partner, set it with "
-                                "createPatch",
-                                group.name));
+    notes.push_back(
+        fmt::format("OpenFOAM: patch \"{}\" is written as type patch; cyclic needs its partner, set it with "
+                    "createPatch",
+                    group.name));
   return "patch";
 }
 
 std::string header(const char* kind, const std::string& location, const char* object, const std::string& note = "") {
-  return fmt::format("FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {};\n{}"
-                     "    location    \"{}\";\n    object      {};\n}}\n\n",
-                     kind, note.empty() ? "" : fmt::format("    note        \"{}\";\n", note), location, object);
+  return fmt::format(
+      "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {};\n{}"
+      "    location    \"{}\";\n    object      {};\n}}\n\n",
+      kind, note.empty() ? "" : fmt::format("    note        \"{}\";\n", note), location, object);
 }
 
 /// One file of the mesh, checked to its close.
@@ -70,8 +72,10 @@ class FoamWriter {
   void write(const std::string& folder, const std::string& shown) {
     write_points(folder, shown);
     write_faces(folder, shown);
-    write_labels(folder, shown, "owner", [](const FoamFace& face) { return face.owner; }, true);
-    write_labels(folder, shown, "neighbour", [](const FoamFace& face) { return face.neighbour; }, false);
+    write_labels(
+        folder, shown, "owner", [](const FoamFace& face) { return face.owner; }, true);
+    write_labels(
+        folder, shown, "neighbour", [](const FoamFace& face) { return face.neighbour; }, false);
     write_boundary(folder, shown);
     write_cell_zones(folder, shown);
     write_face_zones(folder, shown);
@@ -90,8 +94,8 @@ class FoamWriter {
     std::set<std::string> taken;
     for (std::size_t i = 0; i < faces_.boundary.size(); ++i) {
       const FoamFace& face = faces_.boundary[i];
-      const bool is_new = i == 0 || slot(face) != slot(faces_.boundary[i - 1]) ||
-                          face.is_slave != faces_.boundary[i - 1].is_slave;
+      const bool is_new =
+          i == 0 || slot(face) != slot(faces_.boundary[i - 1]) || face.is_slave != faces_.boundary[i - 1].is_slave;
       if (is_new) begin_patch(face, faces_.internal.size() + i, taken);
       ++patches_.back().size;
     }
@@ -177,9 +181,10 @@ class FoamWriter {
     write_file(folder, "boundary", shown, header("polyBoundaryMesh", kLocation, "boundary"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", patches_.size()));
       for (const Patch& patch : patches_)
-        out.text(fmt::format("    {}\n    {{\n        type            {};\n        nFaces          {};\n"
-                             "        startFace       {};\n    }}\n",
-                             patch.name, patch.type, patch.size, patch.start));
+        out.text(
+            fmt::format("    {}\n    {{\n        type            {};\n        nFaces          {};\n"
+                        "        startFace       {};\n    }}\n",
+                        patch.name, patch.type, patch.size, patch.start));
       out.text(")\n");
     });
   }
@@ -299,8 +304,9 @@ void write_system(const std::string& folder, CaseFolders& folders) {
 
 void write_openfoam(const Mesh& mesh, const std::string& path, Context& context, std::vector<std::string>& notes) {
   if (mesh.num_cells_of_dimension(3) == 0)
-    throw InputError("OpenFOAM needs a grid of volume cells, and this mesh has none; extrude a 2-D grid by one cell, "
-                     "write surfaces as stl or obj");
+    throw InputError(
+        "OpenFOAM needs a grid of volume cells, and this mesh has none; extrude a 2-D grid by one cell, "
+        "write surfaces as stl or obj");
   check_folder_place(path);
   std::string folder = path;
   while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();

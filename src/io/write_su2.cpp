@@ -24,12 +24,13 @@ void write_cell(Output& out, const CellBlock& block, std::size_t cell) {
 void check_cells(const Mesh& mesh) {
   for (const CellBlock& block : mesh.blocks)
     if (num_vertices(block.type) == 0 && block.size() > 0)
-      throw InputError(fmt::format("SU2 cannot hold {} {} cells; write VTU or OpenFOAM", block.size(),
-                                   name_of(block.type)));
+      throw InputError(
+          fmt::format("SU2 cannot hold {} {} cells; write VTU or OpenFOAM", block.size(), name_of(block.type)));
   if (mesh.num_cells_of_dimension(mesh.dimension) == 0)
-    throw InputError(fmt::format("SU2 needs a grid of cells of dimension {}, and this mesh has none; surfaces go to "
-                                 "stl, obj, ply or vtp",
-                                 mesh.dimension));
+    throw InputError(
+        fmt::format("SU2 needs a grid of cells of dimension {}, and this mesh has none; surfaces go to "
+                    "stl, obj, ply or vtp",
+                    mesh.dimension));
 }
 
 void write_elements(Output& out, const Mesh& mesh) {
@@ -95,10 +96,12 @@ std::vector<Marker> make_markers(const Mesh& mesh, std::vector<std::string>& not
   for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
     const Group& group = mesh.groups[GroupId(i)];
     num_regions += group.dimension == mesh.dimension;
-    if (group.dimension == mesh.dimension - 1 && !group.two_sided) markers.push_back({names[i], std::move(by_group[i].faces)});
+    if (group.dimension == mesh.dimension - 1 && !group.two_sided)
+      markers.push_back({names[i], std::move(by_group[i].faces)});
   }
   if (Marker& rest = by_group.back(); !rest.faces.empty()) {
-    notes.push_back(fmt::format("SU2: {} boundary faces without a patch are in the marker unnamed_boundary", rest.faces.size()));
+    notes.push_back(
+        fmt::format("SU2: {} boundary faces without a patch are in the marker unnamed_boundary", rest.faces.size()));
     markers.push_back({"unnamed_boundary", std::move(rest.faces)});
   }
   if (num_inner > 0) notes.push_back(fmt::format("SU2: {} faces of two-sided inner patches are left out", num_inner));

@@ -127,7 +127,8 @@ void write_stl(const Mesh& mesh, Output& out, const WriteOptions& options, Conte
   const std::vector<std::string> names = names_or_empty(mesh, "STL", notes);
   // Binary STL has one nameless solid in single precision: it is used only where that loses nothing.
   const bool is_one = num_groups_of_faces(mesh) <= 1 && header_name(mesh).size() <= kStlHeader - kStlNameMark.size();
-  if (options.binary && is_one && fits_float(mesh, surface)) return write_stl_binary(mesh, surface, header_name(mesh), out);
+  if (options.binary && is_one && fits_float(mesh, surface))
+    return write_stl_binary(mesh, surface, header_name(mesh), out);
   if (options.binary)
     notes.push_back(is_one ? "STL: written as text, since binary STL would round the coordinates to single precision"
                            : "STL: written as text, since binary STL holds no patch names");
@@ -168,11 +169,12 @@ void write_ply(const Mesh& mesh, Output& out, const WriteOptions& options, Conte
   out.text(fmt::format("ply\nformat {} 1.0\ncomment written by delfront\n",
                        options.binary ? "binary_little_endian" : "ascii"));
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (mesh.groups[GroupId(i)].dimension == 2) out.text(fmt::format("comment patch_name {} {}\n", number[i], names[i]));
-  out.text(fmt::format(
-      "element vertex {}\nproperty double x\nproperty double y\nproperty double z\nelement face {}\n"
-      "property list int int vertex_indices\nproperty int patch_id\nend_header\n",
-      surface.points().size(), surface.faces().size()));
+    if (mesh.groups[GroupId(i)].dimension == 2)
+      out.text(fmt::format("comment patch_name {} {}\n", number[i], names[i]));
+  out.text(
+      fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\nelement face {}\n"
+                  "property list int int vertex_indices\nproperty int patch_id\nend_header\n",
+                  surface.points().size(), surface.faces().size()));
   for (VertexId v : surface.points()) {
     if (options.binary) {
       out.binary(mesh.points[v]);

@@ -103,11 +103,12 @@ void write_names(VtkOutput& vtk, const Mesh& mesh, const char* format, std::vect
   vtk.open("FieldData");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Group& group = mesh.groups[GroupId(i)];
-    vtk.line(fmt::format("<DataArray type=\"Int32\" Name=\"{}:{}\" NumberOfComponents=\"1\" NumberOfTuples=\"2\""
-                         "{}{} format=\"ascii\">{} {}</DataArray>",
-                         role_name(mesh, group.dimension), escape_xml(names[i]),
-                         group.kind.empty() ? "" : fmt::format(" kind=\"{}\"", escape_xml(group.kind)),
-                         group.two_sided ? " two_sided=\"1\"" : "", number[i], group.dimension));
+    vtk.line(
+        fmt::format("<DataArray type=\"Int32\" Name=\"{}:{}\" NumberOfComponents=\"1\" NumberOfTuples=\"2\""
+                    "{}{} format=\"ascii\">{} {}</DataArray>",
+                    role_name(mesh, group.dimension), escape_xml(names[i]),
+                    group.kind.empty() ? "" : fmt::format(" kind=\"{}\"", escape_xml(group.kind)),
+                    group.two_sided ? " two_sided=\"1\"" : "", number[i], group.dimension));
   }
   vtk.close("FieldData");
 }
@@ -163,8 +164,8 @@ void write_points(VtkOutput& vtk, const Mesh& mesh) {
   static_assert(sizeof(Point) == 3 * sizeof(double));
   vtk.open("Points");
   vtk.array("Points", 3,
-            std::vector{std::span<const double>(reinterpret_cast<const double*>(mesh.points.data()),
-                                                3 * mesh.points.size())});
+            std::vector{
+                std::span<const double>(reinterpret_cast<const double*>(mesh.points.data()), 3 * mesh.points.size())});
   vtk.close("Points");
 }
 
@@ -209,9 +210,10 @@ void write_vtp(const Mesh& mesh, Output& out, const WriteOptions& options, Conte
   vtk.open(fmt::format("PolyData dimension=\"{}\"", mesh.dimension));
   write_names(vtk, mesh, "VTP", notes);
   const Blocks verts = blocks_of(mesh, 0, 0), lines = blocks_of(mesh, 1, 1), polys = blocks_of(mesh, 2, 2);
-  vtk.open(fmt::format("Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
-                       "NumberOfPolys=\"{}\"",
-                       mesh.points.size(), num_cells(verts), num_cells(lines), num_cells(polys)));
+  vtk.open(
+      fmt::format("Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
+                  "NumberOfPolys=\"{}\"",
+                  mesh.points.size(), num_cells(verts), num_cells(lines), num_cells(polys)));
   write_points(vtk, mesh);
   const std::pair<const char*, const Blocks*> parts[] = {{"Verts", &verts}, {"Lines", &lines}, {"Polys", &polys}};
   for (const auto& [tag, part] : parts) {

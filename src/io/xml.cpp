@@ -132,7 +132,8 @@ class XmlParser {
       if (!looking_at("=")) fail(fmt::format("'=' is missing after attribute {}", attribute.substr(0, 40)));
       ++at_;
       skip_spaces();
-      if (at_ >= bytes_.size() || (bytes_[at_] != '"' && bytes_[at_] != '\'')) fail("an attribute's value has no quotes");
+      if (at_ >= bytes_.size() || (bytes_[at_] != '"' && bytes_[at_] != '\''))
+        fail("an attribute's value has no quotes");
       const char quote = bytes_[at_++];
       const std::size_t end = bytes_.find(quote, at_);
       if (end == std::string_view::npos) fail("the file ends inside an attribute; it is truncated");

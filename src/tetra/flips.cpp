@@ -149,10 +149,27 @@ bool Flips::plan_face_removal(FaceRef ref, double bound, Retriangulation& plan) 
   return true;
 }
 
+/// The tet's edges, largest dihedral angle first: in a sliver those are its two diagonals, whose removal mends it.
+std::array<std::uint8_t, 6> Flips::order_edges(TetIndex t) const {
+  const std::uint32_t* n = &c_.node[4 * t];
+  Point normal[4];
+  for (unsigned f = 0; f < 4; ++f) {
+    const Point p = c_.point(n[kFaceNodes[f][0]]);
+    normal[f] = cross(c_.point(n[kFaceNodes[f][1]]) - p, c_.point(n[kFaceNodes[f][2]]) - p);
+    normal[f] = normal[f] / (length(normal[f]) + kTiniestProduct);
+  }
+  double flatness[6];  // minus the cosine of the angle
+  std::array<std::uint8_t, 6> order{0, 1, 2, 3, 4, 5};
+  for (unsigned e = 0; e < 6; ++e) flatness[e] = dot(normal[kEdgeNodes[5 - e][0]], normal[kEdgeNodes[5 - e][1]]);
+  std::sort(order.begin(), order.end(), [&](std::uint8_t a, std::uint8_t b) { return flatness[a] > flatness[b]; });
+  return order;
+}
+
 bool Flips::plan_best(TetIndex t, double bound, double enough, Retriangulation& plan) {
   bool found = false;
   double best = bound;
-  for (const auto& e : kEdgeNodes) {
+  for (const std::uint8_t i : order_edges(t)) {
+    const std::uint8_t* e = kEdgeNodes[i];
     if (!plan_edge_removal(t, c_.node[4 * t + e[0]], c_.node[4 * t + e[1]], best, plan)) continue;
     found = true;
     best = plan.worst;

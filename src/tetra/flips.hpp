@@ -49,6 +49,7 @@ class Flips {
   void measure_ring_triangles(VertexIndex a, VertexIndex b);
   double fill_table(double bound);
   void add_polygon(std::size_t i, std::size_t j, VertexIndex a, VertexIndex b, Retriangulation& plan) const;
+  std::array<std::uint8_t, 6> order_edges(TetIndex t) const;
   double replace_face_edge(FaceRef below, FaceRef above, VertexIndex p, VertexIndex q, double bound, int depth);
 
   TetComplex& c_;

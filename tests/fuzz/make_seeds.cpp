@@ -98,14 +98,18 @@ int main(int argc, char** argv) {
   write_all(surface(), root, "surface");
   write_all(general_cells(), root, "general");
   write_text(root, "obj", "o a\nusemtl b\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1/1 2//2 -1/3/4\nf 1 2 \\\n3\n");
-  write_text(root, "poly", "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n1 1\n2 0 5\n4 1 2 3 4\n2 1 3\n1\n1 0 0 0\n0\n");
+  write_text(root, "poly",
+             "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n1 1\n2 0 5\n4 1 2 3 4\n2 1 3\n1\n1 0 0 0\n0\n");
   write_text(root, "off", "COFF # c\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2 9\n");
-  write_text(root, "stl", "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");
-  write_text(root, "vtu",
-             "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points>"
-             "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"binary\">JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAA"
-             "AIA/AAAAAA==</DataArray></Points><Cells><DataArray Name=\"connectivity\" type=\"Int8\" format=\"ascii\">0 1 2"
-             "</DataArray><DataArray Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray Name=\"types\" "
-             "format=\"ascii\">6</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>");
+  write_text(root, "stl",
+             "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");
+  write_text(
+      root, "vtu",
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+      "format=\"binary\">JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAA"
+      "AIA/AAAAAA==</DataArray></Points><Cells><DataArray Name=\"connectivity\" type=\"Int8\" format=\"ascii\">0 1 2"
+      "</DataArray><DataArray Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray Name=\"types\" "
+      "format=\"ascii\">6</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>");
   return 0;
 }

@@ -89,7 +89,7 @@ TEST(Insert, helps_where_nothing_else_can) {
   LocalOperations operations(c);
   EXPECT_EQ(operations.swap(0, 1), LocalOperations::Swap::none);
   EXPECT_FALSE(operations.contract(0));
-  ASSERT_TRUE(operations.insert(0, 1));
+  ASSERT_TRUE(operations.insert(0, 0.2, 1));
   EXPECT_EQ(c.find_defect(), "");
   EXPECT_EQ(operations.touched.size(), 2u * kRing);
   EXPECT_GT(worst_of(c, operations.touched), 1.4 * before);
@@ -102,7 +102,7 @@ TEST(Insert, makes_no_edge_far_shorter_than_wanted) {
   for (VertexIndex v = 0; v < c.num_vertices(); ++v) c.vertex[v].h = 10;
   c.vertex[0].z = -3;
   c.vertex[1].z = 3;
-  EXPECT_FALSE(LocalOperations(c).insert(0, 1));
+  EXPECT_FALSE(LocalOperations(c).insert(0, 0.2, 1));
   EXPECT_EQ(c.find_defect(), "");
 }
 
@@ -127,7 +127,7 @@ void operate_at_random(TetComplex c, unsigned seed, int steps, int (&done)[4]) {
     const bool changed = kind == 0   ? operations.swap(t, enough) != LocalOperations::Swap::none
                          : kind == 1 ? operations.smooth(v, enough)
                          : kind == 2 ? operations.contract(v)
-                                     : operations.insert(t, enough);
+                                     : operations.insert(t, 0, enough);
     if (!changed) continue;
     ++done[kind];
     ASSERT_EQ(c.find_defect(), "") << "step " << step << " kind " << kind;

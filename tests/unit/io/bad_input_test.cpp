@@ -76,21 +76,27 @@ TEST(BadInput, stl_text_with_a_broken_facet) {
 
 TEST(BadInput, obj_index_out_of_range_names_the_line) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "f 1 2 3\nf 1 2 4\n")), {"line 5", "vertex 4", "3 vertices"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "f 1 2 3\nf 1 2 4\n")),
+                  {"line 5", "vertex 4", "3 vertices"});
   expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "f 1 2 0\n")), {"line 4", "vertex 0"});
-  expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "f -1 -2 -4\n")), {"line 4", "vertex -4"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "f -1 -2 -4\n")),
+                  {"line 4", "vertex -4"});
   expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "f 1 2\n")), {"line 4", "2"});
   expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices)), {"no faces"});
   expect_mentions(message_of_reading<InputError>(write_text("a.obj", "v 0 0,5 1\n")), {"line 1", "decimal comma"});
-  expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "v nan 0 0\nf 1 2 3\n")), {"point 3", "not finite"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.obj", vertices + "v nan 0 0\nf 1 2 3\n")),
+                  {"point 3", "not finite"});
 }
 
 TEST(BadInput, off_and_ply_indices_and_truncation) {
-  expect_mentions(message_of_reading<InputError>(write_text("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n")), {"line 6", "3"});
-  expect_mentions(message_of_reading<InputError>(write_text("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")), {"truncated"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n")),
+                  {"line 6", "3"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")),
+                  {"truncated"});
   expect_mentions(message_of_reading<InputError>(write_text("a.off", "OFF\n4000000000 2 0\n0 0 0\n")), {"4000000000"});
-  const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                           "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
   expect_mentions(message_of_reading<InputError>(write_text("a.ply", head + "3 0 1 7\n")), {"face 0", "vertex 7"});
   expect_mentions(message_of_reading<InputError>(write_text("a.ply", head + "3 0 1")), {"truncated"});
 }
@@ -119,10 +125,14 @@ TEST(BadInput, cut_files_of_every_writer_give_an_error_or_less_never_a_crash) {
 }
 
 TEST(BadInput, second_order_and_unknown_cells_are_named) {
-  const std::string msh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 11 2 0 1 1 1 1 1 1 1 1 1 1 1\n$EndElements\n";
+  const std::string msh =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 11 2 0 1 1 1 1 1 1 1 1 1 1 "
+      "1\n$EndElements\n";
   expect_mentions(message_of_reading<InputError>(write_text("a.msh", msh)), {"type 11", "linear"});
-  expect_mentions(message_of_reading<InputError>(write_text("a.msh", "$MeshFormat\n1 0 8\n$EndMeshFormat\n")), {"MSH 1", "4.1"});
-  expect_mentions(message_of_reading<InputError>(write_text("a.su2", "NDIME= 3\nNELEM= 1\n22 0 1 2 3\n")), {"line 3", "22"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.msh", "$MeshFormat\n1 0 8\n$EndMeshFormat\n")),
+                  {"MSH 1", "4.1"});
+  expect_mentions(message_of_reading<InputError>(write_text("a.su2", "NDIME= 3\nNELEM= 1\n22 0 1 2 3\n")),
+                  {"line 3", "22"});
 }
 
 }  // namespace

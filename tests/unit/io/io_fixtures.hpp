@@ -100,7 +100,7 @@ inline Mesh two_boxes() {
 inline Mesh mixed_cells() {
   Mesh mesh;
   const double t = 1.0 / 3;
-  const Point points[] = {{0, 0, 0}, {t, 0, 0}, {t, t, 0}, {0, t, 0}, {0, 0, t},         {t, 0, t},
+  const Point points[] = {{0, 0, 0}, {t, 0, 0}, {t, t, 0},     {0, t, 0},     {0, 0, t},           {t, 0, t},
                           {t, t, t}, {0, t, t}, {0.7, 0.1, 0}, {0.7, 0.1, t}, {t / 2, t / 2, 0.7}, {0.5, 0.2, 0.6}};
   for (Point p : points) mesh.points.push_back(p);
   const auto cell = [&](CellType type, std::vector<std::size_t> v, GroupId group) {
@@ -123,7 +123,8 @@ inline Mesh plane_grid() {
   Mesh mesh;
   mesh.dimension = 2;
   const double t = 1.0 / 7;
-  for (Point p : {Point{0, 0, 0}, Point{t, 0, 0}, Point{2 * t, 0, 0}, Point{0, t, 0}, Point{t, t, 0}, Point{2 * t, t, 0}})
+  for (Point p :
+       {Point{0, 0, 0}, Point{t, 0, 0}, Point{2 * t, 0, 0}, Point{0, t, 0}, Point{t, t, 0}, Point{2 * t, t, 0}})
     mesh.points.push_back(p);
   const auto v = [](std::size_t i) { return VertexId(i); };
   const GroupId plane = mesh.add_group(2, "plane"), in = mesh.add_group(1, "in"), out = mesh.add_group(1, "out");
@@ -138,8 +139,8 @@ inline Mesh plane_grid() {
 
 /// @brief What a format keeps of groups.
 struct Keeps {
-  bool kinds = true;      // kind and two_sided
-  bool regions = true;    // groups of the top dimension
+  bool kinds = true;    // kind and two_sided
+  bool regions = true;  // groups of the top dimension
   bool group_order = true;
   std::map<std::string, std::string> renamed;
 };
@@ -220,7 +221,8 @@ std::string message_of_reading(const std::filesystem::path& path) {
 }
 
 inline void expect_mentions(const std::string& message, const std::vector<std::string>& words) {
-  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << "no '" << word << "' in: " << message;
+  for (const std::string& word : words)
+    EXPECT_NE(message.find(word), std::string::npos) << "no '" << word << "' in: " << message;
 }
 
 }  // namespace delfront::fixtures

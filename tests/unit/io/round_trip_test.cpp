@@ -22,7 +22,8 @@ TEST(RoundTrip, vtu_keeps_everything_in_each_encoding) {
 
 TEST(RoundTrip, vtp_keeps_faces_and_lines) {
   for (const Mesh& mesh : {plane_grid(), cube_surface(), sphere_surface(2)})
-    for (const WriteOptions& options : {WriteOptions{}, kText, kPacked}) expect_same(round_trip(mesh, "a.vtp", options), mesh);
+    for (const WriteOptions& options : {WriteOptions{}, kText, kPacked})
+      expect_same(round_trip(mesh, "a.vtp", options), mesh);
 }
 
 TEST(RoundTrip, vtu_keeps_fields_on_vertices_and_on_one_block) {
@@ -30,7 +31,8 @@ TEST(RoundTrip, vtu_keeps_fields_on_vertices_and_on_one_block) {
   Field on_vertices{"velocity", Field::On::vertices, CellType::vertex, 3, {}};
   for (std::size_t i = 0; i < 3 * mesh.points.size(); ++i) on_vertices.values.push_back(1.0 / double(i + 1));
   Field on_tets{"quality", Field::On::cells, CellType::tetrahedron, 1, {}};
-  for (std::size_t i = 0; i < mesh.num_cells(CellType::tetrahedron); ++i) on_tets.values.push_back(std::sqrt(double(i)));
+  for (std::size_t i = 0; i < mesh.num_cells(CellType::tetrahedron); ++i)
+    on_tets.values.push_back(std::sqrt(double(i)));
   mesh.fields = {on_vertices, on_tets};
   for (const WriteOptions& options : {WriteOptions{}, kText, kPacked}) {
     const Mesh got = round_trip(mesh, "a.vtu", options);
@@ -56,7 +58,8 @@ TEST(RoundTrip, vtu_keeps_polygons_and_polyhedra) {
   std::vector<VertexId> polygon;
   for (std::size_t i = 0; i < 5; ++i) polygon.push_back(VertexId(i));
   add_cell(mesh, CellType::polygon, polygon, mesh.find_group(2, "rest"));
-  for (const WriteOptions& options : {WriteOptions{}, kText, kPacked}) expect_same(round_trip(mesh, "a.vtu", options), mesh);
+  for (const WriteOptions& options : {WriteOptions{}, kText, kPacked})
+    expect_same(round_trip(mesh, "a.vtu", options), mesh);
 }
 
 TEST(RoundTrip, vtu_escapes_names_and_numbers_double_ones) {
@@ -77,7 +80,8 @@ TEST(RoundTrip, msh_keeps_cells_order_and_names_in_each_version_and_encoding) {
     for (const char* version : {"2.2", "4.1"})
       for (bool binary : {true, false}) {
         SCOPED_TRACE(std::string(version) + (binary ? " binary" : " text"));
-        expect_same(round_trip(mesh, "a.msh", {.binary = binary, .version = version, .compress = false}), mesh, {.kinds = false, .renamed = {}});
+        expect_same(round_trip(mesh, "a.msh", {.binary = binary, .version = version, .compress = false}), mesh,
+                    {.kinds = false, .renamed = {}});
       }
 }
 
@@ -86,11 +90,13 @@ TEST(RoundTrip, msh_keeps_cells_without_a_group) {
   CellBlock& tets = mesh.block(CellType::tetrahedron);
   tets.group[3] = tets.group[7] = GroupId();
   for (const char* version : {"2.2", "4.1"})
-    expect_same(round_trip(mesh, "a.msh", {.binary = true, .version = version, .compress = false}), mesh, {.kinds = false, .renamed = {}});
+    expect_same(round_trip(mesh, "a.msh", {.binary = true, .version = version, .compress = false}), mesh,
+                {.kinds = false, .renamed = {}});
 }
 
 TEST(RoundTrip, medit_keeps_cells_names_and_kinds) {
-  for (const Mesh& mesh : {two_boxes(), mixed_cells(), plane_grid(), cube_surface()}) expect_same(round_trip(mesh, "a.mesh"), mesh);
+  for (const Mesh& mesh : {two_boxes(), mixed_cells(), plane_grid(), cube_surface()})
+    expect_same(round_trip(mesh, "a.mesh"), mesh);
 }
 
 TEST(RoundTrip, su2_keeps_cells_and_markers) {

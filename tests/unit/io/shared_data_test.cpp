@@ -68,10 +68,12 @@ TEST(SharedData, readable_facet_files_have_the_counts_and_volumes_of_the_readme)
 TEST(SharedData, defective_files_are_refused_with_the_reason) {
   DELFRONT_NEEDS_SHARED_DATA(data);
   const auto folder = *data / "synthetic";
-  expect_mentions(message_of_reading<InputError>(folder / "truncated_binary.stl"), {"320", "room for 200", "truncated"});
+  expect_mentions(message_of_reading<InputError>(folder / "truncated_binary.stl"),
+                  {"320", "room for 200", "truncated"});
   expect_mentions(message_of_reading<InputError>(folder / "truncated_ascii.stl"), {"195", "line", "truncated"});
   expect_mentions(message_of_reading<InputError>(folder / "decimal_comma.stl"), {"decimal comma", "line 4"});
-  expect_mentions(message_of_reading<InputError>(folder / "nan_vertices.stl"), {"3 of 320 facets", "not a finite", "line"});
+  expect_mentions(message_of_reading<InputError>(folder / "nan_vertices.stl"),
+                  {"3 of 320 facets", "not a finite", "line"});
 }
 
 TEST(SharedData, zero_count_is_read_by_size_with_a_warning) {
@@ -88,7 +90,8 @@ TEST(SharedData, names_of_solids_and_groups_arrive) {
   DELFRONT_NEEDS_SHARED_DATA(data);
   Context context;
   const Mesh duct = read_mesh((*data / "surface/heatedDuct.stl").string(), context);
-  for (const char* name : {"metalInlet", "heaterInlet", "fluidInlet", "metalOutlet", "heaterOutlet", "fluidOutlet", "metalExternal", "heaterExternal"})
+  for (const char* name : {"metalInlet", "heaterInlet", "fluidInlet", "metalOutlet", "heaterOutlet", "fluidOutlet",
+                           "metalExternal", "heaterExternal"})
     EXPECT_TRUE(duct.find_group(2, name).is_valid()) << name;
   const Mesh box = read_mesh((*data / "synthetic/box_with_baffle.obj").string(), context);
   EXPECT_EQ(box.groups.size(), 7u);

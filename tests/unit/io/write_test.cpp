@@ -3,9 +3,9 @@
 #include <sys/mount.h>
 #include <unistd.h>
 
-#include "io_fixtures.hpp"
 #include "io/foam_faces.hpp"
 #include "io/output.hpp"
+#include "io_fixtures.hpp"
 
 namespace delfront {
 namespace {
@@ -43,7 +43,9 @@ TEST(Write, places_that_cannot_be_written_are_said_beforehand_and_when_writing) 
   Context context;
   for (const Bad& bad : all) {
     expect_mentions(io_error([&] { check_writable(bad.path); }), bad.words);
-    expect_mentions(io_error([&] { write_mesh(two_boxes(), bad.path, context, {}, bad.path.ends_with('/') ? "" : "vtu"); }), bad.words);
+    expect_mentions(
+        io_error([&] { write_mesh(two_boxes(), bad.path, context, {}, bad.path.ends_with('/') ? "" : "vtu"); }),
+        bad.words);
   }
   EXPECT_EQ(num_entries(folder), 1u);
   check_writable((folder / "new.vtu").string());
@@ -63,13 +65,15 @@ TEST(Write, a_full_device_gives_an_error_in_every_format) {
   Context context;
   for (const FormatInfo& format : formats()) {
     if (!format.can_write || format.name == "openfoam") continue;
-    expect_mentions(io_error([&] { write_mesh(two_boxes(), "/dev/full", context, {}, format.name); }), {"/dev/full", "No space left"});
+    expect_mentions(io_error([&] { write_mesh(two_boxes(), "/dev/full", context, {}, format.name); }),
+                    {"/dev/full", "No space left"});
   }
 }
 
 TEST(Write, a_full_disk_leaves_the_old_file_and_nothing_else) {
   const fs::path folder = scratch_folder("io_tmpfs");
-  if (::mount("none", folder.c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "mount is not permitted here: needs root";
+  if (::mount("none", folder.c_str(), "tmpfs", 0, "size=64k") != 0)
+    GTEST_SKIP() << "mount is not permitted here: needs root";
   Context context;
   const std::string path = (folder / "a.vtu").string();
   write_mesh(two_boxes(), path, context);
@@ -111,8 +115,10 @@ TEST(Write, formats_refuse_what_they_cannot_hold) {
   Context context;
   const std::string folder = scratch_folder("io_refuse").string();
   Mesh polygon = cube_surface();
-  add_cell(polygon, CellType::polygon, std::array{VertexId(0), VertexId(1), VertexId(3), VertexId(2), VertexId(4)}, GroupId());
-  for (const char* name : {"/a.msh", "/a.mesh", "/a.su2"}) EXPECT_THROW(write_mesh(polygon, folder + name, context), InputError) << name;
+  add_cell(polygon, CellType::polygon, std::array{VertexId(0), VertexId(1), VertexId(3), VertexId(2), VertexId(4)},
+           GroupId());
+  for (const char* name : {"/a.msh", "/a.mesh", "/a.su2"})
+    EXPECT_THROW(write_mesh(polygon, folder + name, context), InputError) << name;
   EXPECT_THROW(write_mesh(cube_surface(), folder + "/case/", context), InputError);
   EXPECT_THROW(write_mesh(cube_surface(), folder + "/a.su2", context), InputError);
   EXPECT_THROW(write_mesh(Mesh(), folder + "/a.stl", context), InputError);
@@ -143,7 +149,8 @@ TEST(OpenFoam, faces_are_in_upper_triangular_order_and_zones_name_regions) {
       EXPECT_LT(std::pair(owner[i - 1], neighbour[i - 1]), std::pair(owner[i], neighbour[i]));
     }
   }
-  expect_mentions(contents(poly / "boundary"), {"left_wall", "type            wall", "nFaces          2", "rest", "nFaces          18"});
+  expect_mentions(contents(poly / "boundary"),
+                  {"left_wall", "type            wall", "nFaces          2", "rest", "nFaces          18"});
   expect_mentions(contents(poly / "cellZones"), {"fluid", "solid"});
   expect_mentions(contents(poly / "faceZones"), {"between", "flipMap"});
   EXPECT_TRUE(fs::exists(folder / "case/system/controlDict"));
@@ -221,7 +228,9 @@ TEST(OtherPrograms, meshio_and_vtk_read_our_vtu_with_its_names) {
   if (!can_run(python + " -c 'import meshio'")) GTEST_SKIP() << "meshio is not installed (python3-meshio)";
   Context context;
   const fs::path folder = scratch_folder("io_meshio");
-  for (const auto& [name, options] : {std::pair{"raw", WriteOptions{}}, {"packed", WriteOptions{.binary = true, .version = "", .compress = true}}, {"text", WriteOptions{.binary = false, .version = "", .compress = false}}}) {
+  for (const auto& [name, options] : {std::pair{"raw", WriteOptions{}},
+                                      {"packed", WriteOptions{.binary = true, .version = "", .compress = true}},
+                                      {"text", WriteOptions{.binary = false, .version = "", .compress = false}}}) {
     const std::string path = (folder / name).string() + ".vtu";
     write_mesh(two_boxes(), path, context, options);
     const std::string with_meshio =
@@ -230,7 +239,8 @@ TEST(OtherPrograms, meshio_and_vtk_read_our_vtu_with_its_names) {
         "assert sum(len(c.data) for c in m.cells) == 34; assert sorted(m.cell_data) == [\"patch_id\", \"region_id\"]'";
     EXPECT_EQ(std::system(with_meshio.c_str()), 0) << name;
     if (!can_run(python + " -c 'import vtk'")) continue;
-    const std::string with_vtk = python + " -c 'import vtk; r = vtk.vtkXMLUnstructuredGridReader(); r.SetFileName(\"" + path +
+    const std::string with_vtk = python + " -c 'import vtk; r = vtk.vtkXMLUnstructuredGridReader(); r.SetFileName(\"" +
+                                 path +
                                  "\"); r.Update(); g = r.GetOutput(); assert g.GetNumberOfCells() == 34; "
                                  "assert g.GetFieldData().GetArray(\"region:solid\").GetValue(0) == 1'";
     EXPECT_EQ(std::system(with_vtk.c_str()), 0) << name;

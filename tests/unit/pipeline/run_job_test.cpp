@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "delfront/io.hpp"
+#include "delfront/job.hpp"
+#include "support/support.hpp"
+
+namespace delfront {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A job that grids the unit cube, in a folder of its own.
+class RunJob : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fixtures::scratch_folder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    write_surface(fixtures::cube_surface());
+    options_.output.files = {path("cube.vtu")};
+    options_.output.report = path("report.json");
+  }
+  void write_surface(const Mesh& mesh) {
+    Context context;
+    write_mesh(mesh, path("cube.obj"), context);
+    options_.input.files = {path("cube.obj")};
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  JobResult run() { return run_job(options_, context_, "the command"); }
+  nlohmann::json report() const { return nlohmann::json::parse(std::ifstream(path("report.json"))); }
+
+  fs::path folder_;
+  Options options_;
+  Context context_;
+};
+
+TEST_F(RunJob, writes_the_grid_and_the_report) {
+  const JobResult result = run();
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.error;
+  EXPECT_EQ(result.files_written, options_.output.files);
+  EXPECT_NEAR(result.report.quality.volume, 1, 1e-12);
+  EXPECT_TRUE(fs::exists(path("cube.vtu")));
+  const nlohmann::json json = report();
+  EXPECT_EQ(json["outcome"], "done");
+  EXPECT_EQ(json["command"], "the command");
+  EXPECT_EQ(json["inputs"][0]["num_cells"], 12);
+  EXPECT_EQ(json["boundaries"].size(), 6u);
+}
+
+TEST_F(RunJob, a_failed_gate_leaves_the_grid) {
+  options_.output.require = "min_dihedral > 89.9";
+  const JobResult result = run();
+  EXPECT_EQ(result.exit_code, ExitCode::gate_not_met);
+  EXPECT_EQ(result.failed_gates.size(), 1u);
+  EXPECT_TRUE(fs::exists(path("cube.vtu")));
+  EXPECT_EQ(report()["exit_code"], 5);
+}
+
+TEST_F(RunJob, an_open_surface_is_refused_with_its_places) {
+  Mesh open = fixtures::cube_surface();
+  CellBlock& triangles = open.block(CellType::triangle);
+  triangles.vertices.resize(triangles.vertices.size() - 3);
+  triangles.group.pop_back();
+  write_surface(open);
+  const JobResult result = run();
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_TRUE(has_errors(result.report.surface.findings));
+  EXPECT_EQ(result.defects_file, path("cube_defects.vtp"));
+  EXPECT_TRUE(fs::exists(path("cube_defects.vtp")));
+  EXPECT_FALSE(fs::exists(path("cube.vtu")));
+  EXPECT_EQ(report()["outcome"], "bad_input");
+}
+
+TEST_F(RunJob, cancelling_writes_nothing) {
+  std::atomic<bool> cancel{true};
+  context_.cancel = &cancel;
+  const JobResult result = run();
+  EXPECT_EQ(result.exit_code, ExitCode::interrupted);
+  EXPECT_TRUE(result.files_written.empty());
+  EXPECT_FALSE(fs::exists(path("cube.vtu")));
+  EXPECT_EQ(report()["exit_code"], 130);
+}
+
+TEST_F(RunJob, an_output_that_cannot_be_written_is_said_before_any_work) {
+  options_.output.files.push_back(path("nofolder/cube.vtu"));
+  const JobResult result = run();
+  EXPECT_EQ(result.exit_code, ExitCode::cannot_write);
+  EXPECT_TRUE(result.stage.empty()) << result.stage;
+  EXPECT_FALSE(fs::exists(path("cube.vtu")));
+}
+
+TEST_F(RunJob, lengths_are_resolved_by_the_input_and_units_by_the_output) {
+  options_.input.units = "m";
+  options_.output.units = "mm";
+  options_.size.hmax = Length{500, "mm"};
+  const JobResult result = run();
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.error;
+  EXPECT_NEAR(result.scale.diagonal, std::sqrt(3.0), 1e-15);
+  EXPECT_EQ(result.mesh.bounding_box().high, (Point{1000, 1000, 1000}));
+}
+
+TEST_F(RunJob, callbacks_of_the_context_are_given_back) {
+  int calls = 0;
+  context_.on_progress = [&calls](const Progress&) { ++calls; };
+  run();
+  const int during = calls;
+  EXPECT_GT(during, 0);
+  context_.progress("after", 0, 0, "");
+  EXPECT_EQ(calls, during + 1);
+}
+
+}  // namespace
+}  // namespace delfront
