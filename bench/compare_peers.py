@@ -7,8 +7,8 @@
 Surfaces: geodesic spheres of 8,820 / 42,320 / 121,680 triangles (about 1e5, 1e6 and 5e6 tetrahedra), the same
 coordinates to 17 digits for every tool. Each tool is a separate process; all outputs are read by one routine, and their
 volume must be that of the surface. Times are medians over the repeats, smallest and largest in brackets. "phase": the
-gridding time that the tool itself prints (delfront: tetrahedralize, recover, refine, improve); "whole": wall time of the
-process, reading and writing text included; "RSS": peak memory of the process. eta = 12 (3V)^(2/3) / sum of squared
+gridding time that the tool itself prints (delfront: tetrahedralize, recover, refine, improve); "whole": wall time of
+the process, reading and writing text included; "RSS": peak memory of the process. eta = 12 (3V)^(2/3) / sum of squared
 edges. Tools that are missing are listed as not installed. Needs numpy.
 """
 
@@ -38,7 +38,7 @@ BEGIN, END = "<!-- begin: made by bench/compare_peers.py -->", "<!-- end -->"
 
 
 def geodesic_sphere(frequency: int) -> tuple[np.ndarray, np.ndarray]:
-    """Icosahedron with each face cut into frequency^2 triangles, on the unit sphere: points (n, 3), triangles (m, 3)."""
+    """Icosahedron with each face cut into frequency^2 triangles, on the unit sphere: points and triangles."""
     golden = (1 + 5**0.5) / 2
     corners = np.array(
         [[-1, golden, 0], [1, golden, 0], [-1, -golden, 0], [1, -golden, 0], [0, -1, golden], [0, 1, golden]]
@@ -118,7 +118,8 @@ def phase_of_delfront(log: str, folder: Path) -> float | None:
 
 
 def phase_of_tetgen(log: str, folder: Path) -> float | None:
-    times = {name.strip(): float(value) for name, value in re.findall(r"^\s*([A-Za-z ]+) seconds:\s*([\d.eE+-]+)", log, re.M)}
+    found = re.findall(r"^\s*([A-Za-z ]+) seconds:\s*([\d.eE+-]+)", log, re.M)
+    times = {name.strip(): float(value) for name, value in found}
     total = times.get("Total running")
     return None if total is None else total - times.get("Output", 0.0)
 
@@ -145,7 +146,8 @@ def find_tools(arguments: argparse.Namespace) -> list[Tool]:
     for threads in arguments.threads:
         command = ["{program}", "mesh", "s.off", "-o", "o.mesh", "--ascii", "--report", "report.json", "-q"]
         version = first_line_with_digits([ours, "--version"]) if ours else ""
-        tools.append(Tool("delfront", ours, version, threads, [*command, "-j", str(threads)], "o.mesh", phase_of_delfront))
+        command += ["-j", str(threads)]
+        tools.append(Tool("delfront", ours, version, threads, command, "o.mesh", phase_of_delfront))
     tetgen = shutil.which("tetgen")
     version = first_line_with_digits(["dpkg-query", "-W", "tetgen"]) if tetgen else ""
     tools.append(
@@ -344,7 +346,8 @@ def machine() -> str:
     except (OSError, AttributeError):
         pass
     load = os.getloadavg()[0]
-    return f"{model}, {os.cpu_count()} cores, {memory:.0f} GiB, {platform.system()} {platform.release()}; load at the start {load:.1f}"
+    system = f"{platform.system()} {platform.release()}"
+    return f"{model}, {os.cpu_count()} cores, {memory:.0f} GiB, {system}; load at the start {load:.1f}"
 
 
 def report_of(arguments: argparse.Namespace) -> str:

@@ -150,14 +150,12 @@ class MeshCommand : public Command {
 
   static void show_failure(const JobResult& result, Terminal& terminal) {
     terminal.error(result.exit_code, result.error, result.places);
-    if (terminal.verbosity() >= 0 && result.exit_code == ExitCode::bad_input)
+    if (result.exit_code == ExitCode::bad_input)
       for (const Finding& f : result.report.surface.findings)
-        if (f.severity == Severity::error) {
-          const std::string remedy = f.remedy.empty() ? "" : "; try: " + f.remedy;
-          terminal.log(LogLevel::warning, fmt::format("{}: {}{}", f.kind, f.message, remedy));
-        }
+        if (f.severity == Severity::error)
+          terminal.detail(fmt::format("{}: {}{}", f.kind, f.message, f.remedy.empty() ? "" : "; try: " + f.remedy));
     if (!result.defects_file.empty())
-      terminal.log(LogLevel::warning, fmt::format("every place is in {} (ParaView opens it)", result.defects_file));
+      terminal.detail(fmt::format("every place is in {} (ParaView opens it)", result.defects_file));
   }
 
   /// Stages that ran more than once, added up.

@@ -141,6 +141,12 @@ void Terminal::error(ExitCode code, const std::string& message, const std::vecto
   if (places.size() > kShown) fmt::print(stderr, "  and {} more places\n", places.size() - kShown);
 }
 
+void Terminal::detail(const std::string& message) {
+  if (verbosity_ < 0) return;
+  if (style_ == ProgressStyle::json) return put_json({{"event", "detail"}, {"message", message}});
+  fmt::print(stderr, "  {}\n", message);
+}
+
 ProgressStyle parse_progress_style(const std::string& name) {
   if (name == "auto") return ProgressStyle::automatic;
   if (name == "bar") return ProgressStyle::bar;

@@ -15,7 +15,8 @@ enum class ProgressStyle { automatic, bar, plain, json, none };
 /// @brief All that a run says while it runs, on stderr.
 ///
 /// With ProgressStyle::json, stderr holds nothing but JSON objects, one a line, each with an "event":
-/// "progress" (stage, done, total, unit, seconds), "log" (level, message), "error" (exit_code, message, places).
+/// "progress" (stage, done, total, unit, seconds), "log" (level, message), "error" (exit_code, message, places),
+/// "detail" (message).
 class Terminal {
  public:
   /// @param verbosity  -1 errors only, 0 progress and warnings, 1 everything
@@ -27,6 +28,8 @@ class Terminal {
   void log(LogLevel level, const std::string& message);
   /// @brief "delfront: error: …", then the first places.
   void error(ExitCode code, const std::string& message, const std::vector<Place>& places);
+  /// @brief A line that belongs to the error before it.
+  void detail(const std::string& message);
   /// @brief Remove a bar that stands there.
   void clear_bar();
   int verbosity() const { return verbosity_; }

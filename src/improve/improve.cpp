@@ -18,9 +18,22 @@ constexpr double kStretch = 1.7;
 constexpr double kMaxWorkAngle = 32;  // degrees; a regular tet has 70, but few vertices can have only those
 constexpr double kCrowded = 0.4;      // of the wanted size: nearer neighbours than this are too many
 constexpr double kEnough = 1.5;       // times the quality worked for: good enough to look no further
-// Tets between two cancellation points, so that these are a few milliseconds apart.
-constexpr std::size_t kSwapsBetweenChecks = 1024, kSmoothsBetweenChecks = 128, kInsertionsBetweenChecks = 16;
 constexpr std::size_t kScansBetweenChecks = 1 << 16;
+
+/// One kind of operation, over the list of bad tets, in each pass from `first_pass` on.
+///
+/// A surface of needles leaves tets that nothing can mend: where more than `free_tries` and kTriesForOne times the
+/// successes have been made, the sweep ends, and the next pass resumes there.
+struct Sweep {
+  std::size_t first_pass;
+  std::size_t free_tries;
+  std::size_t between_checks;  ///< tets between two cancellation points, so that these are some milliseconds apart
+  double bound = 0;            ///< only tets whose quality is below this
+  TetIndex resume = 0;
+  bool was_cut = false;
+};
+constexpr std::size_t kTriesForOne = 50;
+constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max() / 2;
 
 class Improver {
  public:
@@ -46,7 +59,7 @@ class Improver {
   }
   bool insert(TetIndex t);
   template <class Operation>
-  void sweep(std::size_t first_pass, std::size_t between_checks, Operation operation);
+  void run_sweep(Sweep& sweep, Operation operation);
   bool is_stale(TetIndex t) const;
   void run_pass();
   std::size_t num_changes() const {
@@ -64,7 +77,12 @@ class Improver {
   double goal_ = 0;    ///< quality below which points are removed and added
   double work_ = 0;    ///< quality below which a tet is worked on
   double enough_ = 0;  ///< quality at which an operation looks no further
-  std::vector<TetIndex> bad_, next_;
+  Sweep thin_out_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024};
+  Sweep swap_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024};
+  Sweep smooth_{.first_pass = 1, .free_tries = 10000, .between_checks = 128};
+  Sweep contract_{.first_pass = 2, .free_tries = 10000, .between_checks = 512};
+  Sweep insert_{.first_pass = 2, .free_tries = 1000, .between_checks = 16};
+  std::vector<TetIndex> bad_, next_;         ///< in slot order
   std::vector<std::uint32_t> vertex_pass_;   ///< the last pass that changed a tet of this vertex
   std::vector<std::uint32_t> vertex_sweep_;  ///< the last sweep that visited this vertex
   std::uint32_t sweep_ = 0;
@@ -147,7 +165,6 @@ bool Improver::smooth(TetIndex t) {
 }
 
 bool Improver::contract(TetIndex t) {
-  if (!is_below(t, goal_)) return false;
   for (const VertexIndex v : nodes(t)) {
     if (!is_first_visit(v) || !is_changed(operations_.contract(v))) continue;
     ++report_.points_removed;
@@ -159,7 +176,6 @@ bool Improver::contract(TetIndex t) {
 /// Vertices far nearer to a neighbour than the size asks (left over from boundary recovery): they cannot make good
 /// tets.
 bool Improver::thin_out(TetIndex t) {
-  if (!is_below(t, goal_)) return false;
   for (const VertexIndex v : nodes(t)) {
     if (c_.on_boundary[v]) continue;
     double nearest = std::numeric_limits<double>::infinity();
@@ -173,7 +189,6 @@ bool Improver::thin_out(TetIndex t) {
 }
 
 bool Improver::insert(TetIndex t) {
-  if (!is_below(t, goal_)) return false;
   if (!is_changed(operations_.insert(t, goal_, enough_))) return false;
   ++report_.points_added;
   return true;
@@ -181,16 +196,25 @@ bool Improver::insert(TetIndex t) {
 
 /// Apply an operation to every tet of bad_ that is still bad; afterwards bad_ holds what is left and what came new.
 template <class Operation>
-void Improver::sweep(std::size_t first_pass, std::size_t between_checks, Operation operation) {
-  if (report_.passes < first_pass) return;
+void Improver::run_sweep(Sweep& sweep, Operation operation) {
+  if (report_.passes < sweep.first_pass) return;
+  const bool takes_stale = report_.passes == sweep.first_pass || sweep.was_cut;
+  const auto first = static_cast<std::size_t>(std::lower_bound(bad_.begin(), bad_.end(), sweep.resume) - bad_.begin());
+  sweep.resume = 0;
+  sweep.was_cut = false;
   ++sweep_;
   next_.clear();
+  std::size_t tried = 0, done = 0;
   for (std::size_t i = 0; i < bad_.size(); ++i) {
-    if (i % between_checks == 0) context_.progress("improve", i, bad_.size(), "cells");
-    const TetIndex t = bad_[i];
+    if (i % sweep.between_checks == 0) context_.progress("improve", i, bad_.size(), "cells");
+    const TetIndex t = bad_[(first + i) % bad_.size()];
     if (!is_bad(t)) continue;
-    if (report_.passes == first_pass || !is_stale(t)) operation(t);
     next_.push_back(t);
+    if (sweep.was_cut || !is_below(t, sweep.bound) || (!takes_stale && is_stale(t))) continue;
+    ++tried;
+    if (operation(t)) ++done;
+    sweep.was_cut = tried > sweep.free_tries + kTriesForOne * done;
+    if (sweep.was_cut) sweep.resume = t;
   }
   std::sort(next_.begin(), next_.end());
   next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
@@ -198,17 +222,19 @@ void Improver::sweep(std::size_t first_pass, std::size_t between_checks, Operati
   bad_.swap(next_);
 }
 
-/// The smallest dihedral angle of all, degrees. Leaves bad_ filled with the tets below work_ if there are any.
+/// The smallest dihedral angle of all, degrees. Leaves bad_ filled with the tets below work_.
 double Improver::measure_least_dihedral() {
-  scan(work_);
-  const bool has_bad = !bad_.empty();
-  if (!has_bad) scan(1);
   double least = std::numbers::pi;
-  for (const TetIndex t : bad_) {
-    const std::uint32_t* n = &c_.node[4 * t];
-    least = std::min(least, measure_dihedrals(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3])).least);
+  for (double bound = work_; bound < 1; bound *= 1.5) {
+    scan(bound);
+    for (const TetIndex t : bad_) {
+      const auto [p, q, r, v] = nodes(t);
+      least = std::min(least, measure_dihedrals(c_.point(p), c_.point(q), c_.point(r), c_.point(v)).least);
+    }
+    // What was not listed has a sine above the root of the bound; so this is the smallest.
+    if (least < std::numbers::pi / 2 && std::sin(least) * std::sin(least) <= bound) break;
   }
-  if (!has_bad) bad_.clear();
+  bad_.erase(std::remove_if(bad_.begin(), bad_.end(), [this](TetIndex t) { return !is_bad(t); }), bad_.end());
   return least * 180 / std::numbers::pi;
 }
 
@@ -216,7 +242,7 @@ void Improver::count_left() {
   for (const TetIndex t : bad_) {
     if (!is_below(t, goal_)) continue;
     ++report_.below_goal;
-    const std::uint32_t* n = &c_.node[4 * t];
+    const auto n = nodes(t);
     if (c_.on_boundary[n[0]] && c_.on_boundary[n[1]] && c_.on_boundary[n[2]] && c_.on_boundary[n[3]])
       ++report_.below_goal_forced;
   }
@@ -224,17 +250,19 @@ void Improver::count_left() {
 
 void Improver::run_pass() {
   ++report_.passes;
-  sweep(1, kSwapsBetweenChecks, [this](TetIndex t) { thin_out(t); });
-  sweep(1, kSwapsBetweenChecks, [this](TetIndex t) { swap(t); });
-  sweep(1, kSmoothsBetweenChecks, [this](TetIndex t) { smooth(t); });
-  sweep(2, kSmoothsBetweenChecks, [this](TetIndex t) { contract(t); });
-  sweep(2, kInsertionsBetweenChecks, [this](TetIndex t) { insert(t); });
+  run_sweep(thin_out_, [this](TetIndex t) { return thin_out(t); });
+  run_sweep(swap_, [this](TetIndex t) { return swap(t); });
+  run_sweep(smooth_, [this](TetIndex t) { return smooth(t); });
+  run_sweep(contract_, [this](TetIndex t) { return contract(t); });
+  run_sweep(insert_, [this](TetIndex t) { return insert(t); });
 }
 
 ImproveReport Improver::run() {
   goal_ = quality_of_angle(options_.min_dihedral);
   work_ = quality_of_angle(std::max(options_.min_dihedral, std::min(kStretch * options_.min_dihedral, kMaxWorkAngle)));
   enough_ = kEnough * work_;
+  thin_out_.bound = contract_.bound = insert_.bound = goal_;
+  swap_.bound = smooth_.bound = work_;
   vertex_pass_.assign(c_.num_vertices(), 0);
   report_.min_dihedral_before_deg = measure_least_dihedral();
   const int max_passes = options_.enabled ? options_.max_passes : 0;

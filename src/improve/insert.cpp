@@ -13,6 +13,7 @@ constexpr std::size_t kMaxCavity = 48;
 constexpr double kShortest = 0.45;         // edges made by an insertion, of the wanted size ...
 constexpr double kShortestAtWorst = 0.25;  // ... and where the tet is far below the goal
 constexpr double kInsertionGain = 1.5;     // of the squared sine, short of the goal: a point has to be worth it
+constexpr double kFirstShare = 0.5;        // of the shortest, where the search starts
 constexpr int kRounds = 3;                 // of growing the cavity and moving the point
 }  // namespace
 
@@ -69,8 +70,8 @@ void LocalOperations::grow_cavity(const Point& p, double enough) {
   if (best_size < cavity_.size()) rebuild_hole(best_size, p);
 }
 
-bool LocalOperations::is_far_from_hole(const Point& p, double bound) const {
-  const double share = bound < quality_of_angle(5) ? kShortestAtWorst : kShortest;
+bool LocalOperations::is_far_from_hole(const Point& p, double bound, double of_least) const {
+  const double share = of_least * (bound < quality_of_angle(5) ? kShortestAtWorst : kShortest);
   double h = 0;
   for (unsigned i = 0; i < 4; ++i) h += 0.25 * c_.vertex[c_.node[4 * cavity_[0] + i]].h;
   const double least = share * share * h * h;
@@ -116,6 +117,10 @@ void LocalOperations::commit_insertion(const Point& p) {
 }
 
 bool LocalOperations::try_point(Point p, double bound, double enough) {
+  if (!is_far_from_hole(p, bound, kFirstShare)) {  // hardly any move mends that: save the search
+    clear_cavity();
+    return false;
+  }
   double worst = -1;
   for (int round = 0; round < kRounds; ++round) {
     grow_cavity(p, enough);
@@ -133,7 +138,7 @@ bool LocalOperations::try_point(Point p, double bound, double enough) {
     const auto n = c_.face_nodes(face.ref);
     return orient3d(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), p) > 0;
   };
-  if (worst > bound && is_far_from_hole(p, bound) && keeps_boundary_vertices() &&
+  if (worst > bound && is_far_from_hole(p, bound, 1) && keeps_boundary_vertices() &&
       std::all_of(hole_.begin(), hole_.end(), is_positive)) {
     commit_insertion(p);
     return true;

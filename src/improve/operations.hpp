@@ -69,7 +69,7 @@ class LocalOperations {
   void grow_cavity(const Point& p, double enough);
   void rebuild_hole(std::size_t num_tets, const Point& p);
   bool try_point(Point p, double bound, double enough);
-  bool is_far_from_hole(const Point& p, double bound) const;
+  bool is_far_from_hole(const Point& p, double bound, double of_least) const;
   bool keeps_boundary_vertices();
   void clear_cavity();
   void commit_insertion(const Point& p);

@@ -46,16 +46,22 @@ Point measure_quality_gradient(const Point& p, const Point& q, const Point& r, c
 DihedralRange measure_dihedrals(const Point& p, const Point& q, const Point& r, const Point& v) {
   const Point a = p - v, b = q - v, c = r - v;
   const std::array<Point, 3> side{cross(b, c), cross(c, a), cross(a, b)};
-  const std::array<Point, 4> n{side[0], side[1], side[2], -1.0 * (side[0] + side[1] + side[2])};
-  DihedralRange range{std::numbers::pi, 0};
+  std::array<Point, 4> n{side[0], side[1], side[2], -1.0 * (side[0] + side[1] + side[2])};
+  for (Point& normal : n) normal = normal / (length(normal) + kTiniestProduct);
+  // Cosines find the extremes, but only the arc tangent is exact near 0 and pi.
+  std::array<unsigned, 2> sharp{0, 1}, flat{0, 1};
+  double greatest = -2, least = 2;  // minus the cosine
   for (unsigned i = 0; i < 4; ++i) {
     for (unsigned j = 0; j < i; ++j) {
-      const double angle = std::atan2(length(cross(n[i], n[j])), -dot(n[i], n[j]));
-      range.least = std::min(range.least, angle);
-      range.greatest = std::max(range.greatest, angle);
+      const double flatness = dot(n[i], n[j]);
+      if (flatness > greatest) greatest = flatness, flat = {i, j};
+      if (flatness < least) least = flatness, sharp = {i, j};
     }
   }
-  return range;
+  const auto angle = [&n](const std::array<unsigned, 2>& faces) {
+    return std::atan2(length(cross(n[faces[0]], n[faces[1]])), -dot(n[faces[0]], n[faces[1]]));
+  };
+  return {angle(sharp), angle(flat)};
 }
 
 }  // namespace delfront

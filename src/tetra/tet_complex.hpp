@@ -89,6 +89,12 @@ class TetComplex {
   TetIndex new_tet();
   void kill_tet(TetIndex t);
   VertexIndex add_vertex(Point p, double h);
+  /// @pre no tet has it
+  void remove_last_vertex() {
+    vertex.pop_back();
+    vertex_tet.pop_back();
+    on_boundary.pop_back();
+  }
   void bond(FaceRef a, FaceRef b) {
     neigh[a] = b;
     neigh[b] = a;

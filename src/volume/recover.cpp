@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -147,18 +148,38 @@ TetComplex recover_boundary(const Model& model, Segments& segments, std::vector<
   fail_at_facets(model, failed);
 }
 
+std::vector<SplitTriangle> find_split_triangles(const Segments& segments) {
+  std::vector<SplitTriangle> split;
+  std::vector<VertexIndex> along;
+  for (std::size_t t = 0; t < segments.of_triangle.size(); ++t) {
+    SplitTriangle found{TriangleId(t), {}};
+    bool has_points = false;
+    for (const std::uint32_t e : segments.of_triangle[t]) {
+      segments.vertices_along(e, false, along);
+      has_points = has_points || along.size() > 2;
+      found.outline.insert(found.outline.end(), along.begin(), along.end());
+    }
+    if (has_points) split.push_back(std::move(found));
+  }
+  return split;
+}
+
 }  // namespace
 
-TetComplex tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
-                                   const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context) {
+BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
+                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context) {
   const StageTimer timer(context, "recover");
   Segments segments = build_segments(model);
   std::vector<Subface> subfaces;
-  TetComplex complex = recover_boundary(model, segments, subfaces, report, context);
-  const auto facts = colour_regions(complex, subfaces, model, is_far_field, context);
-  strip_outside(complex, choose_regions(complex, facts, domain));
-  unsplit_boundary(complex, segments, report, context);
-  return complex;
+  BoundaryGrid grid;
+  grid.complex = recover_boundary(model, segments, subfaces, report, context);
+  const auto facts = colour_regions(grid.complex, subfaces, model, is_far_field, context);
+  const std::vector<bool> keep = choose_regions(grid.complex, facts, domain);
+  grid.num_regions = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), true));
+  strip_outside(grid.complex, keep);
+  unsplit_boundary(grid.complex, segments, report, context);
+  if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
+  return grid;
 }
 
 }  // namespace delfront

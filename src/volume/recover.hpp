@@ -10,16 +10,29 @@
 
 namespace delfront {
 
+/// @brief A triangle of the model that stayed subdivided, with all vertices on its outline.
+struct SplitTriangle {
+  TriangleId triangle;
+  std::vector<VertexIndex> outline;
+};
+
+/// @brief Tets that fill the kept regions; what is not as the model has it stands in `split`.
+struct BoundaryGrid {
+  TetComplex complex;
+  std::vector<SplitTriangle> split;
+  std::size_t num_regions = 0;
+};
+
 /// @brief A tetrahedrization whose faces include every given triangle, vertex for vertex, with regions coloured (T2).
 ///
 /// Vertices 0 … n-1 are the model's points, in order, with the mean length of their edges as size. Every triangle of the
-/// model that bounds a kept region is a face flagged constrained (where report.left says so: a union of such faces).
-/// Only tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border.
+/// model that bounds a kept region is a face flagged constrained (those in `split`: a union of such faces).
+/// Only tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border. Vertices may be in no tet.
 /// @param[in] is_far_field  one a patch of the model
 /// @pre check_surface(model) finds no error
 /// @throws MeshingError with the places; InputError where no region is kept
 /// @par Source  Si & Gärtner (2005), Diazzi et al. (2023), George et al. (2003)
-TetComplex tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
-                                   const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context);
+BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
+                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context);
 
 }  // namespace delfront

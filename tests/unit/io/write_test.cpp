@@ -247,6 +247,35 @@ TEST(OtherPrograms, meshio_and_vtk_read_our_vtu_with_its_names) {
   }
 }
 
+TEST(OtherPrograms, we_read_every_encoding_that_vtk_writes) {
+  if (!can_run("/usr/bin/python3 -c 'import vtk'")) GTEST_SKIP() << "vtk is not installed (python3-vtk9)";
+  Context context;
+  const fs::path folder = scratch_folder("io_vtk");
+  write_mesh(two_boxes(), (folder / "in.vtu").string(), context);
+  std::ofstream(folder / "rewrite.py") << R"(
+import itertools, vtk
+reader = vtk.vtkXMLUnstructuredGridReader()
+reader.SetFileName("in.vtu")
+reader.Update()
+for n, (mode, encode, header, order, pack) in enumerate(itertools.product(range(3), (0, 1), (32, 64), (0, 1), (0, 1))):
+    writer = vtk.vtkXMLUnstructuredGridWriter()
+    writer.SetFileName("out%d.vtu" % n)
+    writer.SetInputData(reader.GetOutput())
+    writer.SetDataMode(mode)
+    writer.SetEncodeAppendedData(encode)
+    writer.SetHeaderType(header)
+    writer.SetByteOrder(order)
+    writer.SetCompressorType(1 if pack else 0)
+    writer.Write()
+)";
+  ASSERT_EQ(std::system(("cd " + folder.string() + " && /usr/bin/python3 rewrite.py").c_str()), 0);
+  for (int n = 0; n < 48; ++n) {
+    SCOPED_TRACE(n);
+    const Mesh got = read_mesh((folder / ("out" + std::to_string(n) + ".vtu")).string(), context);
+    expect_same(got, two_boxes(), {.kinds = false, .renamed = {}});
+  }
+}
+
 TEST(OtherPrograms, gmsh_reads_our_msh) {
   if (!can_run("gmsh -version")) GTEST_SKIP() << "gmsh is not installed";
   Context context;

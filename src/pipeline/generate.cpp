@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole run on one screen: look, recover the boundary, sizes, points, improvement.
+#include "delfront/generate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "delfront/size_field.hpp"
+#include "improve/improve.hpp"
+#include "volume/recover.hpp"
+#include "volume/refine.hpp"
+#include "volume/to_mesh.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr double kDefaultGrowth = 1.2;
+
+/// Turned and looked at; what cannot bound a volume goes no further.
+SurfaceReport prepare_surface(Model& model, Context& context) {
+  const StageTimer timer(context, "check");
+  const std::size_t turned = orient_shells(model, context);
+  SurfaceReport report = check_surface(model, context);
+  report.reoriented = turned;
+  return report;
+}
+
+void refuse_invalid(const SurfaceReport& surface) {
+  if (surface.can_bound_volume && !has_errors(surface.findings)) return;
+  std::string message = "the surface cannot be gridded:";
+  std::vector<Place> places;
+  for (const Finding& f : surface.findings) {
+    if (f.severity != Severity::error) continue;
+    message += "\n  " + f.message + (f.remedy.empty() ? "" : "; " + f.remedy);
+    places.insert(places.end(), f.places.begin(), f.places.end());
+  }
+  throw InputError(message, std::move(places));
+}
+
+std::vector<bool> far_field_patches(const Model& model) {
+  std::vector<bool> is_far_field;
+  for (const Patch& patch : model.patches) is_far_field.push_back(patch.kind == "farfield");
+  return is_far_field;
+}
+
+/// Sizes from the boundary (S1). Without a growth the largest boundary size is the largest of all.
+std::unique_ptr<SizeField> build_size_field(const TetComplex& complex, const SizeOptions& options, Context& context) {
+  BoundarySizes boundary;
+  double largest = 0;
+  for (VertexIndex v = 0; v < complex.num_vertices(); ++v) {
+    if (!complex.on_boundary[v] || complex.vertex_tet[v] == kNoIndex || !(complex.vertex[v].h > 0)) continue;
+    boundary.points.push_back(complex.point(v));
+    boundary.size.push_back(complex.vertex[v].h);
+    largest = std::max(largest, complex.vertex[v].h);
+  }
+  boundary.growth = options.growth.value_or(kDefaultGrowth);
+  if (options.hmin) boundary.hmin = options.hmin->value;
+  if (options.hmax)
+    boundary.hmax = options.hmax->value;
+  else if (!options.growth)
+    boundary.hmax = std::max(largest, boundary.hmin);
+  return build_boundary_size_field(boundary, context);
+}
+
+/// The field's size at every vertex, so that all sizes keep the growth.
+void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
+  std::vector<Point> places;
+  for (const TetVertex& v : complex.vertex) places.push_back(v.point());
+  std::vector<double> sizes(places.size());
+  field.sizes(places, sizes);
+  for (std::size_t v = 0; v < sizes.size(); ++v) complex.vertex[v].h = sizes[v];
+}
+
+}  // namespace
+
+Outcome generate(Model model, const Options& options, Context& context) {
+  check_floating_point_mode();
+  Outcome outcome;
+  Report& report = outcome.report;
+  report.surface = prepare_surface(model, context);
+  refuse_invalid(report.surface);
+  BoundaryGrid grid =
+      tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+  const auto size = build_size_field(grid.complex, options.size, context);
+  set_vertex_sizes(grid.complex, *size);
+  report.refine = refine_complex(grid.complex, *size, context);
+  if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
+  outcome.mesh = to_mesh(grid, model);
+  grid = {};
+  const StageTimer timer(context, "measure");
+  report.quality = measure_quality(outcome.mesh, context);
+  return outcome;
+}
+
+}  // namespace delfront
