@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The schedule: one scan finds the bad tets; then passes over them, cheap operations first: swaps, smoothing of their
-// vertices, contraction and insertion for what stays. Only tets that an operation touched are looked at again. Lists
-// are kept in slot order and every decision depends on the complex alone, so the result does too.
+// The schedule: one scan finds the bad tets; then passes over them, cheap operations first: vertices that crowd others
+// are removed, then swaps, smoothing of the tets' vertices, from the second pass on contraction and insertion for what
+// stays. Only where an operation changed something are tets looked at again. Lists are kept in slot order and every
+// decision depends on the complex alone, so the result does too.
 #include "improve/improve.hpp"
 
 #include <algorithm>
@@ -18,6 +19,7 @@ constexpr double kStretch = 1.7;
 constexpr double kMaxWorkAngle = 32;  // degrees; a regular tet has 70, but few vertices can have only those
 constexpr double kCrowded = 0.4;      // of the wanted size: nearer neighbours than this are too many
 constexpr double kEnough = 1.5;       // times the quality worked for: good enough to look no further
+constexpr double kLeastScan = 1e-3;   // quality from which the search for the smallest angle starts
 constexpr std::size_t kScansBetweenChecks = 1 << 16;
 
 /// One kind of operation, over the list of bad tets, in each pass from `first_pass` on.
@@ -79,7 +81,7 @@ class Improver {
   double enough_ = 0;  ///< quality at which an operation looks no further
   Sweep thin_out_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024};
   Sweep swap_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024};
-  Sweep smooth_{.first_pass = 1, .free_tries = 10000, .between_checks = 128};
+  Sweep smooth_{.first_pass = 1, .free_tries = 10000, .between_checks = 64};
   Sweep contract_{.first_pass = 2, .free_tries = 10000, .between_checks = 512};
   Sweep insert_{.first_pass = 2, .free_tries = 1000, .between_checks = 16};
   std::vector<TetIndex> bad_, next_;         ///< in slot order
@@ -92,8 +94,8 @@ class Improver {
 void Improver::scan(double bound) {
   bad_.clear();
   const std::size_t slots = c_.num_slots();
-  FaceBlock block;
-  Lanes apex[3];
+  FaceBlock block{};
+  Lanes apex[3]{};
   TetIndex waiting[kLanes];
   std::size_t lane = 0;
   const auto flush = [&] {
@@ -225,7 +227,7 @@ void Improver::run_sweep(Sweep& sweep, Operation operation) {
 /// The smallest dihedral angle of all, degrees. Leaves bad_ filled with the tets below work_.
 double Improver::measure_least_dihedral() {
   double least = std::numbers::pi;
-  for (double bound = work_; bound < 1; bound *= 1.5) {
+  for (double bound = std::max(work_, kLeastScan); bound < 1; bound *= 1.5) {
     scan(bound);
     for (const TetIndex t : bad_) {
       const auto [p, q, r, v] = nodes(t);
@@ -280,6 +282,7 @@ ImproveReport Improver::run() {
 }  // namespace
 
 ImproveReport improve_complex(TetComplex& complex, const SizeField&, const ImproveOptions& options, Context& context) {
+  const StageTimer timer(context, "improve");
   return Improver(complex, options, context).run();
 }
 

@@ -8,7 +8,7 @@
 namespace delfront {
 
 namespace {
-constexpr int kMaxSwitches = 200;          ///< for one edge
+constexpr int kMaxSwitches = 200;  ///< for one edge
 constexpr int kMaxSideways = 30;
 constexpr std::size_t kMaxRing = 40;       ///< tets around an edge that is switched
 constexpr std::size_t kMaxVisited = 1000;  ///< tets looked at beyond the star of one end

@@ -26,8 +26,8 @@ class RequiredEdges {
 /// @brief Make (a, b) an edge by switching what lies in its way: faces (2-3) and edges, any of which the segment cuts.
 ///
 /// A switch is kept where the segment cuts less afterwards, and undone otherwise. Required edges and constrained faces
-/// stay; every new tet is positive. Between vertices of one flat part of the surface an edge in the way is exchanged for the
-/// other diagonal even where a point has to be added above or below it.
+/// stay; every new tet is positive. Between vertices of one flat part of the surface an edge in the way is exchanged
+/// for the other diagonal even where a point has to be added above or below it.
 /// @return false where that did not succeed; the complex is valid all the same
 /// @par Source  George, Borouchaki & Saltel (2003); Si (2015), section 4
 class EdgeFlips {

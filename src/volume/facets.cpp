@@ -4,8 +4,11 @@
 #include "volume/facets.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <unordered_map>
+
+#include "volume/visible_point.hpp"
 
 namespace delfront {
 
@@ -93,7 +96,8 @@ class FacetRecovery {
     return false;
   }
 
-  /// Any vertex off the facet's plane: it turns the in-circle test into an in-sphere test. On the positive side, if it can.
+  /// Any vertex off the facet's plane: it turns the in-circle test into an in-sphere test. On the positive side, if it
+  /// can.
   VertexIndex find_apex() {
     c_.star(corner_[0], scratch_);
     for (const TetIndex t : scratch_)
@@ -135,7 +139,7 @@ class FacetRecovery {
     cavity_.clear();
     if (start == kNoIndex || !collect_cavity(start)) return unmark(false);
     std::vector<std::array<VertexIndex, 4>> made;
-    if (!fill_half(+1, made) || !fill_half(-1, made) || loses_required_edge(made)) return unmark(false);
+    if (!fill_half(+1, made) || !fill_half(-1, made) || loses_required_edge(made) || !closes(made)) return unmark(false);
     unmark(true);
     keep_.clear();
     for (const Face& f : inner_constrained_) keep_.insert(sorted(f));
@@ -254,9 +258,47 @@ class FacetRecovery {
     std::vector<std::array<std::uint32_t, 3>> local_faces;
     for (const Face& f : faces) local_faces.push_back({local_index(f[0]), local_index(f[1]), local_index(f[2])});
     std::vector<std::array<std::uint32_t, 4>> tets;
-    if (!fill_polyhedron(points_, local_faces, tets)) return false;
+    if (!fill_polyhedron(points_, local_faces, tets)) return fill_from_point(which, faces, made);
     for (const auto& t : tets) made.push_back({global_[t[0]], global_[t[1]], global_[t[2]], global_[t[3]]});
     return true;
+  }
+
+  /// Where no tetrahedrization was found without one: a point that sees the whole half, if there is one.
+  bool fill_from_point(int which, const std::vector<Face>& faces, std::vector<std::array<VertexIndex, 4>>& made) {
+    std::vector<Wall> walls;
+    Point start, middle;
+    double reach = 0;
+    for (const Face& f : faces) {
+      walls.push_back({c_.exact(f[0]), c_.exact(f[1]), c_.exact(f[2])});
+      for (const VertexIndex v : f) middle = middle + c_.point(v) / (3.0 * static_cast<double>(faces.size()));
+    }
+    for (const Face& f : part_)
+      for (const VertexIndex v : f) start = start + c_.point(v) / (3.0 * static_cast<double>(part_.size()));
+    for (const Face& f : faces) reach = std::max(reach, distance(start, c_.point(f[0])));
+    const Point normal = static_cast<double>(which) * cross(c_.point(corner_[1]) - c_.point(corner_[0]),
+                                                            c_.point(corner_[2]) - c_.point(corner_[0]));
+    const auto place = find_visible_point(walls, start, {normal, middle - start}, reach);
+    if (!place) return false;
+    std::set<VertexIndex> on_walls;
+    for (const Face& f : faces) on_walls.insert(f.begin(), f.end());
+    if (on_walls.size() < global_.size()) return false;  // a vertex inside would be lost
+    const VertexIndex v = c_.add_vertex(*place, c_.vertex[corner_[0]].h);
+    for (const Face& f : faces) made.push_back({f[0], f[1], f[2], v});
+    return true;
+  }
+
+  /// Every face of the hole belongs to one new tet, every other face to two.
+  bool closes(const std::vector<std::array<VertexIndex, 4>>& made) {
+    std::map<Face, int> missing;  // how many tets a face still lacks
+    for (const TetIndex t : cavity_)
+      for (unsigned f = 0; f < 4; ++f)
+        if (!(c_.flag[c_.neigh[4 * t + f] >> 2] & TetComplex::marked)) missing[sorted(c_.face_nodes(4 * t + f))] = 1;
+    for (const auto& tet : made)
+      for (const auto& f : kFaceNodes) {
+        const auto [at, is_inner] = missing.try_emplace(sorted({tet[f[0]], tet[f[1]], tet[f[2]]}), 2);
+        if (--at->second < 0) return false;
+      }
+    return std::all_of(missing.begin(), missing.end(), [](const auto& m) { return m.second == 0; });
   }
 
   bool loses_required_edge(const std::vector<std::array<VertexIndex, 4>>& made) {

@@ -19,7 +19,8 @@ namespace delfront {
 /// The tets that a missing triangle cuts are taken out; what is above and what is below it is filled again by gift
 /// wrapping, each as its constrained Delaunay tetrahedrization. Required edges stay.
 /// @param[out] subfaces  the faces that make up the triangles
-/// @return the triangles for which that did not succeed (rounding never matters; only a neighbour recovered earlier can)
+/// @return the triangles for which that did not succeed (rounding never matters; only a neighbour recovered earlier
+/// can)
 /// @par Source  Si & Gärtner (2005); Shewchuk (2000) for the existence; Diazzi et al. (2023)
 std::vector<TriangleId> recover_facets(TetComplex& complex, const Model& model, const Segments& segments,
                                        const RequiredEdges& required, std::vector<Subface>& subfaces,
@@ -28,7 +29,8 @@ std::vector<TriangleId> recover_facets(TetComplex& complex, const Model& model, 
 /// @brief Fill a closed polyhedron with its constrained Delaunay tetrahedra, no new points.
 ///
 /// @param[in] points   its vertices, exactly
-/// @param[in] faces    triples of indices into points, normals into the polyhedron; a face inside of it stands there twice,
+/// @param[in] faces    triples of indices into points, normals into the polyhedron; a face inside of it stands there
+/// twice,
 ///                     once each way
 /// @param[out] tets    positive quadruples whose faces are just the given ones, once each, and inner ones twice
 /// @return false where the search found no way

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gift wrapping: a front of faces that look into what is still empty; each takes the vertex in front of it whose sphere
-// holds no other. Positive tets whose faces close up with the given ones fill the polyhedron exactly once, so that success
-// needs no test of overlap; the tests of crossing only guide the second try, where some vertices are hidden from a face.
+// holds no other. Positive tets whose faces close up with the given ones fill the polyhedron exactly once, so that
+// success needs no test of overlap; the tests of crossing only guide the second try, where some vertices are hidden
+// from a face.
 #include <algorithm>
 #include <unordered_map>
 

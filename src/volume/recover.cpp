@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delaunay of the surface's vertices; edges by Steiner points; facets by filling what they cut again; regions; what is not
-// gridded goes away; Steiner points off the surface.
+// Delaunay of the surface's vertices; edges by Steiner points; facets by filling what they cut again; regions; what is
+// not gridded goes away; Steiner points off the surface.
 #include "volume/recover.hpp"
 
 #include <fmt/format.h>
@@ -52,12 +52,14 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
     places.push_back({(model.points[c[0]] + model.points[c[1]] + model.points[c[2]]) / 3, {t.value}});
   }
   const Point at = places[0].at;
-  throw MeshingError(fmt::format("boundary recovery: {} triangles could not be recovered, the first near ({:g}, {:g}, {:g})",
-                                 failed.size(), at.x, at.y, at.z),
-                     places);
+  throw MeshingError(
+      fmt::format("boundary recovery: {} triangles could not be recovered, the first near ({:g}, {:g}, {:g})",
+                  failed.size(), at.x, at.y, at.z),
+      places);
 }
 
-/// Triangles that lie (nearly) in one plane and hang together; only a guide for the order of trials, so a tolerance will do.
+/// Triangles that lie (nearly) in one plane and hang together; only a guide for the order of trials, so a tolerance
+/// will do.
 class FlatParts {
  public:
   FlatParts(const Model& model, const Segments& segments) : segments_(segments), part_(model.triangles.size()) {

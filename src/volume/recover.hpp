@@ -25,9 +25,9 @@ struct BoundaryGrid {
 
 /// @brief A tetrahedrization whose faces include every given triangle, vertex for vertex, with regions coloured (T2).
 ///
-/// Vertices 0 … n-1 are the model's points, in order, with the mean length of their edges as size. Every triangle of the
-/// model that bounds a kept region is a face flagged constrained (those in `split`: a union of such faces).
-/// Only tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border. Vertices may be in no tet.
+/// Vertices 0 … n-1 are the model's points, in order, with the mean length of their edges as size. Every triangle of
+/// the model that bounds a kept region is a face flagged constrained (those in `split`: a union of such faces). Only
+/// tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border. Vertices may be in no tet.
 /// @param[in] is_far_field  one a patch of the model
 /// @pre check_surface(model) finds no error
 /// @throws MeshingError with the places; InputError where no region is kept

@@ -2,7 +2,8 @@
 // Frontal Delaunay refinement in rounds (Rebay 1993; Marot, Pellerin & Remacle 2019). Terms: a tet is accepted when its
 // circumsphere is about as large as its vertices' sizes ask; the front is the faces between accepted tets (or the
 // boundary) and tets that are not. A tet at the front proposes the point that would make a good tet over that face, but
-// never beyond its own circumcentre. Proposals go in along the Hilbert curve; the kernel refuses those too close to another.
+// never beyond its own circumcentre. Proposals go in along the Hilbert curve; the kernel refuses those too close to
+// another.
 #include "volume/refine.hpp"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ namespace {
 
 constexpr double kRegularRadius = 0.61237243569579452;  ///< circumradius of a regular tet of side 1: sqrt(6) / 4
 constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
-constexpr double kMinDistance = 0.70;     ///< of the wanted size, between points
-constexpr double kEnough = 1e-3;          ///< share of proposals that still succeed, below which a round was the last
+constexpr double kMinDistance = 0.70;  ///< of the wanted size, between points
+constexpr double kEnough = 1e-3;       ///< share of proposals that still succeed, below which a round was the last
 constexpr std::size_t kPointsPerCancelCheck = 4096;
 
 struct Sphere {
@@ -82,8 +83,7 @@ class Refinement {
     proposals_.clear();
     std::size_t kept = 0;
     accepted_.resize(c_.num_slots(), unknown);
-    for (const TetIndex t : pending_)
-      accepted_[t] = is_live(t) ? (is_accepted(t) ? yes : no) : unknown;
+    for (const TetIndex t : pending_) accepted_[t] = is_live(t) ? (is_accepted(t) ? yes : no) : unknown;
     for (const TetIndex t : pending_) {
       if (accepted_[t] != no) continue;
       pending_[kept++] = t;

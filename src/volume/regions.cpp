@@ -136,9 +136,10 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
   decide_holes(facts, borders);
   for (std::size_t i = 0; i < facts.size(); ++i)
     if (facts[i].is_undecided)
-      context.log(LogLevel::info,
-                  fmt::format("region {}: the orientation of its faces does not tell whether it is a hole; taken as a region",
-                              i + 1));
+      context.log(
+          LogLevel::info,
+          fmt::format("region {}: the orientation of its faces does not tell whether it is a hole; taken as a region",
+                      i + 1));
   return facts;
 }
 
@@ -177,8 +178,8 @@ std::vector<bool> choose_regions(const TetComplex& complex, const std::vector<Re
     if (domain.keep == "all") keep[i] = true;
   }
   if (domain.keep == "largest" && !facts.empty()) {
-    const auto largest = std::max_element(facts.begin(), facts.end(),
-                                          [](const auto& a, const auto& b) { return a.volume < b.volume; });
+    const auto largest =
+        std::max_element(facts.begin(), facts.end(), [](const auto& a, const auto& b) { return a.volume < b.volume; });
     keep.assign(facts.size(), false);
     keep[static_cast<std::size_t>(largest - facts.begin())] = true;
   }

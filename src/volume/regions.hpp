@@ -19,8 +19,8 @@ struct Subface {
 /// @brief A bounded component of space, before it is known whether it is wanted.
 struct RegionFacts {
   double volume = 0;
-  bool is_hole = false;           ///< its shell's orientation opposes its parent's
-  bool is_undecided = false;      ///< flips made that undecidable: taken as a region
+  bool is_hole = false;       ///< its shell's orientation opposes its parent's
+  bool is_undecided = false;  ///< flips made that undecidable: taken as a region
   bool touches_far_field = false;
 };
 
@@ -35,7 +35,8 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
 std::vector<bool> choose_regions(const TetComplex& complex, const std::vector<RegionFacts>& facts,
                                  const DomainOptions& domain);
 
-/// @brief Remove the tets that are not kept: ghosts stand on the border of the rest, colours are numbered anew in order.
+/// @brief Remove the tets that are not kept: ghosts stand on the border of the rest, colours are numbered anew in
+/// order.
 void strip_outside(TetComplex& complex, const std::vector<bool>& keep);
 
 }  // namespace delfront

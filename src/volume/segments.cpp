@@ -234,7 +234,8 @@ void recover_segments(TetComplex& complex, DelaunayKernel& kernel, const Model& 
   std::vector<TetIndex> scratch;
   const std::size_t most = kMaxPointsPerEdge * segments.ends.size() + 10000;
   for (bool is_first_pass = true;; is_first_pass = false) {
-    const std::vector<Piece> missing = find_missing_pieces(complex, segments, is_first_pass ? nullptr : &touched, context);
+    const std::vector<Piece> missing =
+        find_missing_pieces(complex, segments, is_first_pass ? nullptr : &touched, context);
     if (missing.empty()) return;
     touched.clear();
     for (const Piece& piece : missing) {
@@ -244,8 +245,7 @@ void recover_segments(TetComplex& complex, DelaunayKernel& kernel, const Model& 
       for (const TetIndex t : kernel.made())
         for (unsigned k = 0; k < 4; ++k)
           if (const VertexIndex w = complex.node[4 * t + k]; w != kGhost) touched.push_back(w);
-      if (segments.steiner_edge.size() > most)
-        fail_at(complex.point(piece.low), piece.low, "too many points on edges");
+      if (segments.steiner_edge.size() > most) fail_at(complex.point(piece.low), piece.low, "too many points on edges");
     }
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());

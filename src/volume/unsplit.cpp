@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terms: the star of s is cut by constrained faces into sectors, one a region (or outside) between two facets. The faces
-// of one facet that touch s form a path from the vertex before s on its edge to the vertex after it. Without s a path's
-// polygon is triangulated again; its triangles bound the sectors on both sides of it.
+// Terms: the star of s is cut by constrained faces into sectors, one a region (or outside) between two facets. The
+// faces of one facet that touch s form a path from the vertex before s on its edge to the vertex after it. Without s a
+// path's polygon is triangulated again; its triangles bound the sectors on both sides of it.
 #include "volume/unsplit.hpp"
 
 #include <fmt/format.h>
@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
+#include "volume/facets.hpp"
 #include "volume/visible_point.hpp"
 
 namespace delfront {
@@ -28,9 +30,10 @@ struct Sector {
   std::vector<TetIndex> tets;
   bool is_ghost = false;
   std::uint32_t region = TetComplex::kOutside;
-  Point moved;                                      ///< where its point goes
-  VertexIndex vertex = kNoIndex;                    ///< the point itself
-  std::vector<Face> walls;                          ///< link faces and polygon triangles, normals inwards
+  std::vector<Face> walls;                         ///< link faces and polygon triangles, normals inwards
+  std::ptrdiff_t num_polygon_walls = 0;            ///< the last ones of them
+  std::optional<Point> moved;                      ///< where its point goes; none where it is filled without one
+  std::vector<std::array<VertexIndex, 4>> filled;  ///< then: how
 };
 
 class PointRemoval {
@@ -44,7 +47,7 @@ class PointRemoval {
     segments_.neighbours(s, ends_);
     if (!find_sectors() || !find_paths() || !triangulate_paths()) return false;
     for (Sector& sector : sectors_)
-      if (!sector.is_ghost && !place(sector)) return false;
+      if (!sector.is_ghost && !place(sector) && !fill_without_point(sector)) return false;
     rebuild();
     return true;
   }
@@ -135,8 +138,11 @@ class PointRemoval {
     }
     for (const Path& path : paths_)
       for (const Face& f : path.triangles)
-        for (const int side : {0, 1})
-          sectors_[static_cast<std::size_t>(path.sector[side])].walls.push_back(side == 0 ? f : Face{f[0], f[2], f[1]});
+        for (const int side : {0, 1}) {
+          Sector& sector = sectors_[static_cast<std::size_t>(path.sector[side])];
+          sector.walls.push_back(side == 0 ? f : Face{f[0], f[2], f[1]});
+          ++sector.num_polygon_walls;
+        }
     return true;
   }
 
@@ -159,7 +165,8 @@ class PointRemoval {
       const VertexIndex a = left[i - 1], b = left[i], c = left[i + 1];
       if (turns(a, b, c) <= 0) return false;
       for (const VertexIndex v : left)
-        if (v != a && v != b && v != c && turns(a, b, v) >= 0 && turns(b, c, v) >= 0 && turns(c, a, v) >= 0) return false;
+        if (v != a && v != b && v != c && turns(a, b, v) >= 0 && turns(b, c, v) >= 0 && turns(c, a, v) >= 0)
+          return false;
       return true;
     };
     path.triangles.clear();
@@ -196,36 +203,50 @@ class PointRemoval {
           const Point n = cross(c_.point(path.vertices[0]) - s, c_.point(path.vertices[1]) - s);
           if (const double l = length(n); l > 0) inwards = inwards + (side == 0 ? 1 : -1) * n / l;
         }
-    const auto found = find_visible_point(walls, s, {centre - s, inwards}, reach);
-    if (found) sector.moved = *found;
-    return found.has_value();
+    sector.moved = find_visible_point(walls, s, {centre - s, inwards}, reach);
+    return sector.moved.has_value();
   }
 
-  /// One new tet a wall. Faces are matched inside of each sector; the polygons' triangles across them.
+  bool fill_without_point(Sector& sector) {
+    std::vector<VertexIndex> vertices;
+    for (const Face& f : sector.walls) vertices.insert(vertices.end(), f.begin(), f.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<ExactPoint> points;
+    for (const VertexIndex v : vertices) points.push_back(c_.exact(v));
+    auto local = [&](VertexIndex v) {
+      return static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+    };
+    std::vector<std::array<std::uint32_t, 3>> faces;
+    for (const Face& f : sector.walls) faces.push_back({local(f[0]), local(f[1]), local(f[2])});
+    std::vector<std::array<std::uint32_t, 4>> tets;
+    if (!fill_polyhedron(points, faces, tets)) return false;
+    for (const auto& t : tets)
+      sector.filled.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]], vertices[t[3]]});
+    return true;
+  }
+
+  /// Each sector's tets give way to one a wall, or to those that fill it. Faces are matched inside of each sector; the
+  /// polygons' triangles across them.
   void rebuild() {
     c_.segment_points.erase(s_);
+    c_.vertex_tet[s_] = kNoIndex;
     const double h = c_.vertex[s_].h;
     bool s_is_used = false;
     for (Sector& sector : sectors_) {
-      if (sector.is_ghost) continue;
-      sector.vertex = s_is_used ? c_.add_vertex(sector.moved, h) : s_;
-      c_.vertex[sector.vertex] = {sector.moved.x, sector.moved.y, sector.moved.z, h};
-      c_.on_boundary[sector.vertex] = 0;
-      s_is_used = true;
+      VertexIndex apex = kGhost;
+      if (sector.moved) {
+        apex = s_is_used ? c_.add_vertex(*sector.moved, h) : s_;
+        c_.vertex[apex] = {sector.moved->x, sector.moved->y, sector.moved->z, h};
+        c_.on_boundary[apex] = 0;
+        s_is_used = true;
+      }
+      if (sector.filled.empty())
+        for (const auto& [x, y, z] : sector.walls) sector.filled.push_back({x, y, z, apex});
+      if (sector.is_ghost) sector.filled.erase(sector.filled.begin(), sector.filled.end() - sector.num_polygon_walls);
     }
     std::map<std::pair<Face, int>, FaceRef> polygon_faces;  // sorted triangle and side
-    std::vector<std::pair<FaceRef, bool>> links;            // outer refs and flags, per sector in order of its tets
-    for (Sector& sector : sectors_) {
-      links.clear();
-      std::vector<Face> link_keys;
-      for (const TetIndex t : sector.tets) {
-        const FaceRef ref = 4 * t + static_cast<unsigned>(c_.local_index(t, s_));
-        links.push_back({c_.neigh[ref], c_.is_constrained(ref)});
-        link_keys.push_back(sorted(c_.face_nodes(ref)));
-      }
-      for (const TetIndex t : sector.tets) c_.kill_tet(t);
-      fill(sector, links, link_keys, polygon_faces);
-    }
+    for (std::size_t i = 0; i < sectors_.size(); ++i) fill(static_cast<int>(i), polygon_faces);
     for (const auto& [key, ref] : polygon_faces) {
       if (key.second != 0) continue;
       c_.bond(ref, polygon_faces.at({key.first, 1}));
@@ -238,45 +259,41 @@ class PointRemoval {
     return f;
   }
 
-  void fill(const Sector& sector, const std::vector<std::pair<FaceRef, bool>>& links, const std::vector<Face>& link_keys,
-            std::map<std::pair<Face, int>, FaceRef>& polygon_faces) {
+  void fill(int id, std::map<std::pair<Face, int>, FaceRef>& polygon_faces) {
+    const Sector& sector = sectors_[static_cast<std::size_t>(id)];
     std::map<Face, std::pair<FaceRef, bool>> open;
-    for (std::size_t i = 0; i < links.size(); ++i) open[link_keys[i]] = links[i];
-    const std::size_t first_polygon = sector.is_ghost ? 0 : links.size();
-    for (std::size_t i = 0; i < sector.walls.size(); ++i) {
-      const auto [x, y, z] = sector.walls[i];
+    for (const TetIndex t : sector.tets) {
+      const FaceRef ref = 4 * t + static_cast<unsigned>(c_.local_index(t, s_));
+      open[sorted(c_.face_nodes(ref))] = {c_.neigh[ref], c_.is_constrained(ref)};
+    }
+    for (const TetIndex t : sector.tets) c_.kill_tet(t);
+    std::map<Face, int> polygon_side;
+    for (const Path& path : paths_)
+      for (const int side : {0, 1})
+        if (path.sector[side] == id)
+          for (const Face& f : path.triangles) polygon_side[sorted(f)] = side;
+    for (const auto& n : sector.filled) {
       const TetIndex t = c_.new_tet();
-      c_.set_nodes(t, x, y, z, sector.is_ghost ? kGhost : sector.vertex);
+      c_.set_nodes(t, n[0], n[1], n[2], n[3]);
       c_.flag[t] = TetComplex::fresh;
       c_.region[t] = sector.region;
       if (!sector.is_ghost)
-        for (const VertexIndex v : {x, y, z, sector.vertex}) c_.vertex_tet[v] = t;
-      if (i >= first_polygon) polygon_faces[{sorted({x, y, z}), side_of(sector, i - first_polygon)}] = 4 * t + 3;
-      for (unsigned f = 0; f < (i >= first_polygon ? 3u : 4u); ++f) {
+        for (const VertexIndex v : n) c_.vertex_tet[v] = t;
+      for (unsigned f = 0; f < 4; ++f) {
         const FaceRef ref = 4 * t + f;
         const Face key = sorted(c_.face_nodes(ref));
-        const auto found = open.find(key);
-        if (found == open.end()) {
-          open[key] = {ref, false};
-        } else {
+        if (const auto side = polygon_side.find(key); side != polygon_side.end()) {
+          polygon_faces[{key, side->second}] = ref;
+        } else if (const auto found = open.find(key); found != open.end()) {
           c_.bond(ref, found->second.first);
           c_.set_constrained(ref, found->second.second);
           open.erase(found);
+        } else {
+          open[key] = {ref, false};
         }
       }
     }
     DELFRONT_CHECK(open.empty());
-  }
-
-  /// 0 where the sector's i-th polygon wall is seen from the side its path's triangles look to, else 1.
-  int side_of(const Sector& sector, std::size_t i) const {
-    const int id = static_cast<int>(&sector - sectors_.data());
-    for (const Path& path : paths_)
-      for (std::size_t k = 0; k < path.triangles.size(); ++k)
-        for (const int side : {0, 1})
-          if (path.sector[side] == id && i-- == 0) return side;
-    DELFRONT_CHECK(false && "a polygon wall belongs to a path");
-    return 0;
   }
 
   TetComplex& c_;
@@ -306,10 +323,11 @@ void round_points(TetComplex& c, const std::vector<VertexIndex>& left, RecoveryR
     for (const TetIndex t : star) {
       const std::uint32_t* n = &c.node[4 * t];
       if (!c.is_ghost(t) && c.orient(n[0], n[1], n[2], n[3]) <= 0)
-        throw MeshingError(fmt::format("boundary recovery: a point on an edge near ({:g}, {:g}, {:g}) cannot be rounded to "
-                                       "double precision without turning a cell over; the surface is too thin there",
-                                       at.x, at.y, at.z),
-                           {{at, {s}}});
+        throw MeshingError(
+            fmt::format("boundary recovery: a point on an edge near ({:g}, {:g}, {:g}) cannot be rounded to "
+                        "double precision without turning a cell over; the surface is too thin there",
+                        at.x, at.y, at.z),
+            {{at, {s}}});
     }
   }
 }
@@ -326,6 +344,7 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
       left.push_back(s);
   }
   report.steiner_points = segments.steiner_edge.size();
+  std::reverse(left.begin(), left.end());  // the last ones split the shortest pieces
   PointRemoval removal(complex, segments);
   for (std::size_t before = left.size() + 1; !left.empty() && left.size() < before;) {
     before = left.size();

@@ -8,7 +8,7 @@ namespace delfront {
 
 namespace {
 
-constexpr int kHalvings = 60;   ///< of the first step: down to the resolution of doubles
+constexpr int kHalvings = 60;  ///< of the first step: down to the resolution of doubles
 constexpr int kClimbSteps = 30;
 
 double worst_ratio(const std::vector<Wall>& walls, Point p) {
@@ -46,8 +46,8 @@ Point climb(const std::vector<Wall>& walls, Point p, double best, double step) {
 
 }  // namespace
 
-std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start, const std::vector<Point>& directions,
-                                        double reach) {
+std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start,
+                                        const std::vector<Point>& directions, double reach) {
   std::optional<Point> found;
   double best = 0;
   for (const Point& towards : directions) {

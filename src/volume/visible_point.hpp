@@ -16,7 +16,7 @@ using Wall = std::array<ExactPoint, 3>;
 ///
 /// Searched from `start`, whose neighbourhood is expected to hold one, along each direction at ever smaller steps, then
 /// moved uphill in the worst mean ratio of the tets.
-std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start, const std::vector<Point>& directions,
-                                        double reach);
+std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start,
+                                        const std::vector<Point>& directions, double reach);
 
 }  // namespace delfront

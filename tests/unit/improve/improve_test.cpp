@@ -134,6 +134,17 @@ TEST(Improve, changes_nothing_where_it_is_off_and_counts_what_is_below) {
   EXPECT_EQ(report.passes, 0u);
 }
 
+TEST(Improve, a_goal_of_nothing_changes_nothing) {
+  TetComplex c = fixtures::jittered_cube(4, 0.5, 9);
+  const auto node = c.node;
+  ImproveOptions options;
+  options.min_dihedral = 0;
+  const ImproveReport report = improve_and_check(c, options);
+  EXPECT_EQ(c.node, node);
+  EXPECT_EQ(report.below_goal, 0u);
+  EXPECT_NEAR(report.min_dihedral_after_deg, measure_worst(c).least, 1e-9);
+}
+
 TEST(Improve, counts_cells_that_have_only_boundary_vertices_as_forced) {
   TetComplex c = fixtures::complex_from_tets({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.05}}, {{0, 1, 2, 3}}, 1);
   const ImproveReport report = improve_and_check(c);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "delfront/generate.hpp"
+#include "delfront/model.hpp"
+#include "volume/recover.hpp"
+
+namespace delfront::fixtures {
+
+/// @brief Facets as plain lists: what the makers of hard surfaces below put together.
+struct Facets {
+  std::vector<Point> points;
+  std::vector<std::vector<std::size_t>> faces;  ///< any number of corners, anticlockwise seen from outside
+
+  /// @brief Append another one; equal points are welded when the model is built.
+  void add(const Facets& other, Point shift = {}, double scale = 1);
+  void turn();  ///< every face the other way round
+  /// @brief Volume enclosed, by the divergence theorem; n-gons must be flat.
+  double volume() const;
+};
+
+Facets box_facets(Point low, Point high);
+/// @brief A box whose top is a fan of n slivers from one corner, the sides meeting them.
+Facets fan_box(int n);
+Facets tetrahedron_facets(Point a, Point b, Point c, Point d);
+/// @brief Schönhardt's prism, twisted by `degrees` (0 < degrees < 60), of that height: no tetrahedrization without
+/// further points. Radius 1 around the z axis.
+Facets schoenhardt(double degrees, double height);
+/// @brief Chazelle's polyhedron: a box with n notches from below and n from above, their ridges on z = xy and
+/// z = xy + gap.
+Facets chazelle(int n, double gap);
+
+/// @brief Built, welded, n-gons triangulated.
+Model to_model(const Facets& facets);
+
+/// @brief A recovered boundary, with its report and the finished grid.
+struct Recovered {
+  BoundaryGrid grid;
+  RecoveryReport report;
+  Mesh mesh;
+  double volume = 0;
+};
+
+/// @brief Recover a surface's boundary and test all that must hold whatever the surface:
+/// the surface is valid (else the test's own input is wrong), find_defect() and check(mesh) find nothing, every
+/// triangle at a kept region is a face vertex for vertex or is named in `split`, no other face is constrained, nothing
+/// stays implicit, the counts of the report add up, and the volume is `volume` (to rounding; NaN: not tested).
+Recovered expect_recovered(const Model& model, double volume, const DomainOptions& domain = {});
+Recovered expect_recovered(const Facets& facets, double volume, const DomainOptions& domain = {});
+
+}  // namespace delfront::fixtures
