@@ -20,7 +20,6 @@ constexpr double kDefaultGrowth = 1.2;
 
 /// Turned and looked at; what cannot bound a volume goes no further.
 SurfaceReport prepare_surface(Model& model, Context& context) {
-  const StageTimer timer(context, "check");
   const std::size_t turned = orient_shells(model, context);
   SurfaceReport report = check_surface(model, context);
   report.reoriented = turned;

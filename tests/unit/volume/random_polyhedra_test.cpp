@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random valid surfaces: the boundary of a connected set of tets or of cells of a lattice. They are what users' surfaces
+// are not: non-manifold, full of reflex edges, with tunnels and holes; and their volume is known exactly.
+// DELFRONT_RANDOM_CASES=n runs n of each kind instead of a few, DELFRONT_RANDOM_SEED=s starts at seed s.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+#include "delaunay/delaunay.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/surface_check.hpp"
+#include "support/plc_fixtures.hpp"
+
+namespace delfront {
+namespace {
+
+using fixtures::Facets;
+
+unsigned setting(const char* name, unsigned usual) {
+  const char* given = std::getenv(name);
+  return given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
+}
+
+/// A linear map that shears and squeezes: Delaunay tets become what no Delaunay tetrahedrization of their vertices has.
+class RandomMap {
+ public:
+  explicit RandomMap(std::mt19937& random) {
+    std::uniform_int_distribution<int> squeeze(0, 6), shear(-3, 3);
+    for (double& f : factor_) f = std::exp2(-squeeze(random));
+    for (double& s : shear_) s = shear(random) / 2.0;
+  }
+  Point operator()(Point p) const {
+    p = {factor_[0] * p.x, factor_[1] * p.y, factor_[2] * p.z};
+    p.x += shear_[0] * p.y + shear_[1] * p.z;
+    p.y += shear_[2] * p.z;
+    return p;
+  }
+
+ private:
+  double factor_[3], shear_[3];
+};
+
+enum class Places { uniform, lattice, cospherical, clustered };
+
+/// Multiples of 2^-20, so that the map above is exact.
+Point random_place(Places kind, std::mt19937& random) {
+  std::uniform_int_distribution<int> fine(0, (1 << 20) - 1), coarse(0, 5);
+  const Point p{fine(random) * 0x1p-20, fine(random) * 0x1p-20, fine(random) * 0x1p-20};
+  switch (kind) {
+    case Places::lattice:
+      return {double(coarse(random)), double(coarse(random)), double(coarse(random))};
+    case Places::cospherical: {
+      const Point d = p - Point{0.5, 0.5, 0.5}, on = d / std::max(length(d), 0.01);
+      return {std::round(on.x * 0x1p20) * 0x1p-20, std::round(on.y * 0x1p20) * 0x1p-20, std::round(on.z * 0x1p20) * 0x1p-20};
+    }
+    case Places::clustered:
+      return {double(coarse(random)) + 0x1p-6 * p.x, double(coarse(random)) + 0x1p-6 * p.y, p.z};
+    case Places::uniform:
+      break;
+  }
+  return p;
+}
+
+struct Body {
+  Facets surface;
+  double volume = 0;
+};
+
+/// Grows a connected set from one tet, and takes its boundary; mapped afterwards.
+Body random_tets(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto kind = static_cast<Places>(seed % 4);
+  std::uniform_int_distribution<int> number(30, 200);
+  std::set<std::array<double, 3>> taken;
+  TetComplex c;
+  for (int i = number(random); i > 0; --i) {
+    const Point p = random_place(kind, random);
+    if (taken.insert({p.x, p.y, p.z}).second) c.add_vertex(p, 1);
+  }
+  Context context;
+  build_delaunay(c, context);
+  std::vector<TetIndex> real;
+  for (TetIndex t = 0; t < c.num_slots(); ++t)
+    if (!c.is_dead(t) && !c.is_ghost(t)) real.push_back(t);
+  const std::size_t most = 1 + random() % real.size();
+  std::set<TetIndex> chosen = {real[random() % real.size()]};
+  std::vector<TetIndex> front(chosen.begin(), chosen.end());
+  while (chosen.size() < most && !front.empty()) {
+    const std::size_t i = random() % front.size();
+    std::vector<TetIndex> next;
+    for (unsigned f = 0; f < 4; ++f)
+      if (const TetIndex t = c.neigh[4 * front[i] + f] >> 2; !c.is_ghost(t) && !chosen.contains(t)) next.push_back(t);
+    if (next.empty()) {
+      front.erase(front.begin() + static_cast<std::ptrdiff_t>(i));
+      continue;
+    }
+    const TetIndex t = next[random() % next.size()];
+    chosen.insert(t);
+    front.push_back(t);
+  }
+  const RandomMap map(random);
+  Body body;
+  std::map<VertexIndex, std::size_t> number_of;
+  for (const TetIndex t : chosen) {
+    const std::uint32_t* n = &c.node[4 * t];
+    const Point a = map(c.point(n[0]));
+    body.volume += dot(cross(map(c.point(n[1])) - a, map(c.point(n[2])) - a), map(c.point(n[3])) - a) / 6;
+    for (unsigned f = 0; f < 4; ++f) {
+      if (chosen.contains(c.neigh[4 * t + f] >> 2)) continue;
+      std::vector<std::size_t> face;
+      const auto corners = c.face_nodes(4 * t + f);
+      for (const VertexIndex v : {corners[0], corners[2], corners[1]}) {
+        const auto [it, is_new] = number_of.try_emplace(v, body.surface.points.size());
+        if (is_new) body.surface.points.push_back(map(c.point(v)));
+        face.push_back(it->second);
+      }
+      body.surface.faces.push_back(face);
+    }
+  }
+  return body;
+}
+
+/// A random set of cells of an n^3 lattice, with random diagonals, its vertices moved a little and mapped.
+Body random_cells(unsigned seed) {
+  std::mt19937 random(seed);
+  const int n = 2 + static_cast<int>(random() % 4);
+  std::vector<bool> is_full;
+  for (int i = 0; i < n * n * n; ++i) is_full.push_back(random() % 3 != 0);
+  is_full[0] = true;
+  auto full = [&](int i, int j, int k) {
+    return std::min({i, j, k}) >= 0 && std::max({i, j, k}) < n && is_full[static_cast<std::size_t>((k * n + j) * n + i)];
+  };
+  const RandomMap map(random);
+  std::map<std::array<int, 3>, std::size_t> index;
+  Body body;
+  auto vertex = [&](std::array<int, 3> at) {
+    const auto [it, is_new] = index.try_emplace(at, body.surface.points.size());
+    if (is_new) body.surface.points.push_back(map({double(at[0]), double(at[1]), double(at[2])}));
+    return it->second;
+  };
+  for (int i = -1; i < n; ++i)
+    for (int j = -1; j < n; ++j)
+      for (int k = -1; k < n; ++k)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          std::array<int, 3> next{i, j, k};
+          ++next[axis];
+          const bool here = full(i, j, k), there = full(next[0], next[1], next[2]);
+          if (here == there) continue;
+          const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+          std::array<int, 3> b = next, c = next, d = next;
+          ++b[u], ++c[u], ++c[v], ++d[v];
+          std::vector<std::size_t> q = {vertex(next), vertex(b), vertex(c), vertex(d)};  // normal along the axis
+          if (there) std::reverse(q.begin(), q.end());
+          const std::size_t turn = random() % 2;
+          body.surface.faces.push_back({q[turn], q[turn + 1], q[turn + 2]});
+          body.surface.faces.push_back({q[turn], q[turn + 2], q[(turn + 3) % 4]});
+        }
+  body.volume = body.surface.volume();
+  return body;
+}
+
+void expect_recovered(const Body& body, const char* kind, unsigned seed) {
+  SCOPED_TRACE(std::string(kind) + ", seed " + std::to_string(seed) + ": DELFRONT_RANDOM_SEED=" + std::to_string(seed) +
+               " DELFRONT_RANDOM_CASES=1");
+  try {
+    const auto r = fixtures::expect_recovered(body.surface, body.volume);
+    EXPECT_EQ(r.report.steiner_left, 0u);
+  } catch (const Error& e) {
+    ADD_FAILURE() << e.what();
+  }
+}
+
+TEST(RandomPolyhedra, sets_of_tets) {
+  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 200);
+  for (unsigned seed = first; seed < first + cases; ++seed) expect_recovered(random_tets(seed), "tets", seed);
+}
+
+TEST(RandomPolyhedra, sets_of_cells) {
+  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 100);
+  for (unsigned seed = first; seed < first + cases; ++seed) expect_recovered(random_cells(seed), "cells", seed);
+}
+
+}  // namespace
+}  // namespace delfront
