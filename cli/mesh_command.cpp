@@ -152,7 +152,7 @@ class MeshCommand : public Command {
     terminal.error(result.exit_code, result.error, result.places);
     if (result.exit_code == ExitCode::bad_input)
       for (const Finding& f : result.report.surface.findings)
-        if (f.severity == Severity::error)
+        if (f.severity == Severity::error && result.error.find(f.message) == std::string::npos)
           terminal.detail(fmt::format("{}: {}{}", f.kind, f.message, f.remedy.empty() ? "" : "; try: " + f.remedy));
     if (!result.defects_file.empty())
       terminal.detail(fmt::format("every place is in {} (ParaView opens it)", result.defects_file));

@@ -33,7 +33,7 @@ class DelaunayKernel {
 
   /// @brief What `insert` may do.
   struct Limits {
-    double min_distance = 0;  ///< > 0: refuse where a vertex of the cavity is nearer than this
+    double min_distance = 0;   ///< > 0: refuse where a vertex of the cavity is nearer than this
     bool constrained = false;  ///< the complex is not Delaunay everywhere: make the cavity star-shaped, swallow nothing
   };
 

@@ -165,12 +165,12 @@ bool DelaunayKernel::make_star_shaped(const View& view, TetIndex start, VertexIn
       const bool is_seen = x != kGhost && y != kGhost && z != kGhost && orient3d(view(x), view(y), view(z), p) > 0;
       if (is_seen) continue;
       if (face.inner == start) return false;
-      c_.flag[face.inner] = static_cast<std::uint16_t>((c_.flag[face.inner] & ~TetComplex::marked) | TetComplex::visited);
+      c_.flag[face.inner] =
+          static_cast<std::uint16_t>((c_.flag[face.inner] & ~TetComplex::marked) | TetComplex::visited);
       tested_.push_back(face.inner);
       changed = true;
     }
-    if (changed)
-      std::erase_if(cavity_, [&](TetIndex t) { return !(c_.flag[t] & TetComplex::marked); });
+    if (changed) std::erase_if(cavity_, [&](TetIndex t) { return !(c_.flag[t] & TetComplex::marked); });
   }
   return true;
 }

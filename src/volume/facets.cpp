@@ -139,7 +139,8 @@ class FacetRecovery {
     cavity_.clear();
     if (start == kNoIndex || !collect_cavity(start)) return unmark(false);
     std::vector<std::array<VertexIndex, 4>> made;
-    if (!fill_half(+1, made) || !fill_half(-1, made) || loses_required_edge(made) || !closes(made)) return unmark(false);
+    if (!fill_half(+1, made) || !fill_half(-1, made) || loses_required_edge(made) || !closes(made))
+      return unmark(false);
     unmark(true);
     keep_.clear();
     for (const Face& f : inner_constrained_) keep_.insert(sorted(f));

@@ -121,10 +121,10 @@ Facets chazelle(int n, double gap) {
     return face;
   };
   const auto &left = chain[1][0], &right = chain[1][1], &front = chain[0][0], &back = chain[0][1];
-  body.faces.push_back(joined(front, {right.front(), left.front()}));             // y = 0
-  body.faces.push_back(reversed(joined(back, {right.back(), left.back()})));      // y = side
-  body.faces.push_back(joined(left, {back.front(), front.front()}));              // x = 0
-  body.faces.push_back(reversed(joined(right, {back.back(), front.back()})));     // x = side
+  body.faces.push_back(joined(front, {right.front(), left.front()}));          // y = 0
+  body.faces.push_back(reversed(joined(back, {right.back(), left.back()})));   // y = side
+  body.faces.push_back(joined(left, {back.front(), front.front()}));           // x = 0
+  body.faces.push_back(reversed(joined(right, {back.back(), front.back()})));  // x = side
   return body;
 }
 

@@ -194,8 +194,7 @@ TEST(BuildDelaunay, neighbours_in_floating_point) {
   std::vector<Point> points;
   while (points.size() < 120) {
     const std::array<int, 3> k{ulps(random), ulps(random), ulps(random)};
-    if (taken.insert(k).second)
-      points.push_back({1 + k[0] * 0x1p-52, 1 + k[1] * 0x1p-52, 1 + k[2] * 0x1p-52});
+    if (taken.insert(k).second) points.push_back({1 + k[0] * 0x1p-52, 1 + k[1] * 0x1p-52, 1 + k[2] * 0x1p-52});
   }
   expect_delaunay(points);
 }

@@ -29,8 +29,8 @@ std::vector<Face> inward_faces(const fixtures::Facets& facets) {
   std::vector<Face> faces;
   for (const auto& f : facets.faces)
     for (std::size_t k = 1; k + 1 < f.size(); ++k)
-      faces.push_back({static_cast<std::uint32_t>(f[0]), static_cast<std::uint32_t>(f[k + 1]),
-                       static_cast<std::uint32_t>(f[k])});
+      faces.push_back(
+          {static_cast<std::uint32_t>(f[0]), static_cast<std::uint32_t>(f[k + 1]), static_cast<std::uint32_t>(f[k])});
   return faces;
 }
 
@@ -46,8 +46,8 @@ double volume_of(const std::vector<Point>& p, const std::vector<Tet>& tets) {
 }
 
 /// Positive tets whose faces, seen from inside, are the given ones once each; all others in pairs.
-void expect_filled(const std::vector<Point>& points, const std::vector<Face>& faces, double volume, std::size_t tets_min,
-                   std::size_t tets_max) {
+void expect_filled(const std::vector<Point>& points, const std::vector<Face>& faces, double volume,
+                   std::size_t tets_min, std::size_t tets_max) {
   std::vector<Tet> tets;
   ASSERT_TRUE(fill_polyhedron(exact(points), faces, tets));
   std::map<Face, int> seen;  // + 1 a tet's face, - 1 a given one
@@ -145,7 +145,8 @@ TEST(FillPolyhedron, the_hull_of_random_points_fills_with_their_delaunay_tets) {
       volume += volume_of(points, {{n[0], n[1], n[2], n[3]}});
       ++real;
     }
-    expect_filled(points, faces, volume, real, real);  // Delaunay is the only answer where no five points lie on a sphere
+    expect_filled(points, faces, volume, real,
+                  real);  // Delaunay is the only answer where no five points lie on a sphere
   }
 }
 

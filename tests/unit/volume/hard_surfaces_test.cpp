@@ -174,7 +174,8 @@ TEST(HardSurfaces, a_tower_of_twisted_prisms) {
     tower.faces.push_back({top, top + 1, top + 2});
     const Recovered hollow = expect_recovered(tower, tower.volume());
     EXPECT_EQ(hollow.grid.num_regions, 1u);
-    for (std::size_t i = 1; i < static_cast<std::size_t>(floors); ++i) tower.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    for (std::size_t i = 1; i < static_cast<std::size_t>(floors); ++i)
+      tower.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     EXPECT_EQ(expect_recovered(tower, hollow.volume).grid.num_regions, static_cast<std::size_t>(floors));
   }
 }

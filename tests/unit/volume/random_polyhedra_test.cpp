@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random valid surfaces: the boundary of a connected set of tets or of cells of a lattice. They are what users' surfaces
-// are not: non-manifold, full of reflex edges, with tunnels and holes; and their volume is known exactly.
+// Random valid surfaces: the boundary of a connected set of tets or of cells of a lattice. They are what users'
+// surfaces are not: non-manifold, full of reflex edges, with tunnels and holes; and their volume is known exactly.
 // DELFRONT_RANDOM_CASES=n runs n of each kind instead of a few, DELFRONT_RANDOM_SEED=s starts at seed s.
 #include <gtest/gtest.h>
 
@@ -57,7 +57,8 @@ Point random_place(Places kind, std::mt19937& random) {
       return {double(coarse(random)), double(coarse(random)), double(coarse(random))};
     case Places::cospherical: {
       const Point d = p - Point{0.5, 0.5, 0.5}, on = d / std::max(length(d), 0.01);
-      return {std::round(on.x * 0x1p20) * 0x1p-20, std::round(on.y * 0x1p20) * 0x1p-20, std::round(on.z * 0x1p20) * 0x1p-20};
+      return {std::round(on.x * 0x1p20) * 0x1p-20, std::round(on.y * 0x1p20) * 0x1p-20,
+              std::round(on.z * 0x1p20) * 0x1p-20};
     }
     case Places::clustered:
       return {double(coarse(random)) + 0x1p-6 * p.x, double(coarse(random)) + 0x1p-6 * p.y, p.z};
@@ -134,7 +135,8 @@ Body random_cells(unsigned seed) {
   for (int i = 0; i < n * n * n; ++i) is_full.push_back(random() % 3 != 0);
   is_full[0] = true;
   auto full = [&](int i, int j, int k) {
-    return std::min({i, j, k}) >= 0 && std::max({i, j, k}) < n && is_full[static_cast<std::size_t>((k * n + j) * n + i)];
+    return std::min({i, j, k}) >= 0 && std::max({i, j, k}) < n &&
+           is_full[static_cast<std::size_t>((k * n + j) * n + i)];
   };
   const RandomMap map(random);
   std::map<std::array<int, 3>, std::size_t> index;

@@ -25,8 +25,8 @@ using fixtures::Recovered;
 
 std::size_t num_two_sided_faces(const Mesh& mesh) {
   const CellBlock* faces = mesh.find_block(CellType::triangle);
-  return static_cast<std::size_t>(std::count_if(faces->group.begin(), faces->group.end(),
-                                                [&](GroupId g) { return mesh.groups[g].two_sided; }));
+  return static_cast<std::size_t>(
+      std::count_if(faces->group.begin(), faces->group.end(), [&](GroupId g) { return mesh.groups[g].two_sided; }));
 }
 
 TEST(RecoverBoundary, a_cube_and_one_tetrahedron) {
@@ -83,9 +83,9 @@ TEST(RecoverBoundary, two_cubes_that_touch_in_an_edge_or_a_vertex) {
 /// A box with a sheet across its lower half, attached to the bottom and to two sides.
 Facets box_with_baffle() {
   Facets box;
-  box.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1},
-                {2, 0, 1}, {2, 1, 1}, {1, 1, 1}, {0, 1, 1}, {1, 0, 0.6}, {1, 1, 0.6}};
-  box.faces = {{0, 5, 4, 1}, {1, 4, 3, 2}, {6, 7, 10, 11}, {7, 8, 9, 10}, {0, 6, 11, 5},     {2, 3, 9, 8},
+  box.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0, 1, 0},   {0, 0, 1},
+                {1, 0, 1}, {2, 0, 1}, {2, 1, 1}, {1, 1, 1}, {0, 1, 1}, {1, 0, 0.6}, {1, 1, 0.6}};
+  box.faces = {{0, 5, 4, 1},     {1, 4, 3, 2},     {6, 7, 10, 11},     {7, 8, 9, 10},     {0, 6, 11, 5}, {2, 3, 9, 8},
                {0, 1, 12, 7, 6}, {1, 2, 8, 7, 12}, {5, 11, 10, 13, 4}, {4, 13, 10, 9, 3}, {1, 4, 13, 12}};
   return box;
 }
@@ -220,7 +220,8 @@ TEST(ToMesh, boundary_faces_point_out_of_the_region_with_the_lower_id) {
     for (std::size_t i = 0; i < tets.size(); ++i) {
       if (tets.group[i] != g) continue;
       const Point a = r.mesh.points[tets[i][0]];
-      sum += dot(cross(r.mesh.points[tets[i][1]] - a, r.mesh.points[tets[i][2]] - a), r.mesh.points[tets[i][3]] - a) / 6;
+      sum +=
+          dot(cross(r.mesh.points[tets[i][1]] - a, r.mesh.points[tets[i][2]] - a), r.mesh.points[tets[i][3]] - a) / 6;
     }
     return sum;
   };
