@@ -204,6 +204,7 @@ def main():
     parser.add_argument("--corpus", default=os.path.join(ROOT, "tests", "corpus.toml"))
     parser.add_argument("--out", help="default: docs/corpus.md, or with --only '-', standard output")
     parser.add_argument("--only", default="", help="part of a path, may hold * and ?")
+    parser.add_argument("--without-large", action="store_true", help="leave out the files marked large, by name")
     parser.add_argument("--timeout", type=float, default=600, help="seconds a run")
     parser.add_argument("-j", "--jobs", type=int, default=1, help="files at a time; more than 1 disturbs the times")
     parser.add_argument("--python", default="/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable,
@@ -217,6 +218,9 @@ def main():
     if not os.access(options.delfront, os.X_OK):
         parser.error(f"{options.delfront} is not there; build it or give --delfront")
     rows = read_corpus(options.corpus, options.only)
+    for row in [r for r in rows if options.without_large and r.get("large")]:
+        print(f"left out: {row['path']}")
+        rows.remove(row)
     if not rows:
         parser.error(f"no file of {options.corpus} matches '{options.only}'")
 

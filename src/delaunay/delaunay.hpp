@@ -14,6 +14,14 @@ struct KernelCounts {
   std::uint64_t points = 0, walk_steps = 0, insphere_tests = 0, tets_deleted = 0, tets_created = 0;
 };
 
+/// @brief Circumsphere in plain arithmetic; squared_radius is negative where rounding may have spoilt it, -inf at worst.
+struct Circumsphere {
+  Point centre;
+  double squared_radius = -1;
+  bool is_sure() const { return squared_radius > 0; }
+};
+Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const Point& d);
+
 /// @brief Inserts points one at a time into a TetComplex (Bowyer-Watson), exactly in every degenerate case.
 ///
 /// Constrained faces stop the cavity, which is then reduced until it is star-shaped: with constraints the complex stays
@@ -47,6 +55,16 @@ class DelaunayKernel {
   Insert insert(VertexIndex v, TetIndex hint, const Limits& limits);
   Insert insert(VertexIndex v, TetIndex hint) { return insert(v, hint, Limits()); }
 
+  /// @brief The same where the tet that holds v's place is known: from locate(v), nothing changed since.
+  Insert insert_into(TetIndex holder, VertexIndex v, const Limits& limits);
+
+  /// @brief From now on keep the circumsphere of every tet: most in-sphere tests then are one distance.
+  ///
+  /// For constrained insertion into a complex without segment points. Where rounding could decide, the exact test does.
+  /// Only insertions may change the complex as long as the spheres are used.
+  void keep_spheres();
+  const Circumsphere& sphere(TetIndex t) const { return spheres_[t]; }
+
   KernelCounts counts;
   TetIndex last_tet = kNoIndex;  ///< a live tet made by the last insertion
   VertexIndex duplicate_of = kNoIndex;
@@ -54,37 +72,47 @@ class DelaunayKernel {
 
  private:
   struct CavityFace {
-    VertexIndex node[3];  ///< normal into the cavity
-    FaceRef outer;        ///< the same face from outside
-    TetIndex inner;       ///< the cavity's tet
-    std::uint16_t constrained;
+    VertexIndex node[3];    ///< normal into the cavity
+    FaceRef outer;          ///< the same face from outside
+    TetIndex inner;         ///< the cavity's tet
+    std::uint32_t slot[3];  ///< of the nodes in ball_vertices_
+    bool constrained;
   };
 
   template <class View>
   TetIndex walk(const View& view, VertexIndex v, TetIndex hint);
   template <class View>
-  Insert insert_with(const View& view, VertexIndex v, TetIndex hint, const Limits& limits);
+  Insert insert_with(const View& view, VertexIndex v, TetIndex start, const Limits& limits);
   template <class View>
   bool in_conflict(const View& view, TetIndex t, VertexIndex v);
   template <class View>
-  void grow_cavity(const View& view, TetIndex start, VertexIndex v, bool constrained);
+  bool grow_cavity(const View& view, TetIndex start, VertexIndex v, const Limits& limits);
   void collect_cavity_faces();
+  void add_cavity_face(FaceRef ref, bool constrained);
   template <class View>
   bool make_star_shaped(const View& view, TetIndex start, VertexIndex v);
-  bool swallows_a_vertex();
-  bool is_too_close(VertexIndex v, double min_distance) const;
+  bool is_seen(CavityFace& face, const Point& p, Circumsphere& sphere) const;
+  void number_ball_vertices();
+  bool swallows_a_vertex() const;
+  bool is_in_ball(VertexIndex v) const;
+  bool is_too_close(VertexIndex w, const Point& p, double min_distance) const;
   void fill_cavity(VertexIndex v);
   void bond_new_tets();
+  void bond_by_hash();
   void clear_marks();
   std::uint32_t random();
 
   TetComplex& c_;
   std::vector<TetIndex> cavity_, tested_, made_;
+  std::vector<VertexIndex> reached_;  ///< every vertex of the grown cavity, some of them more than once
+  bool is_cavity_reduced_ = false;    ///< since it was grown: reached_ may have too many
   std::vector<CavityFace> faces_;
+  std::vector<Circumsphere> face_spheres_;  ///< of the tet over each of faces_, where spheres are kept
+  std::vector<Circumsphere> spheres_;       ///< by tet, or empty
   std::vector<std::uint32_t> slot_of_vertex_;  ///< by vertex + 1 (ghost: 0): a sparse set, never cleared
   std::vector<VertexIndex> ball_vertices_;
   std::vector<FaceRef> edge_table_;
-  std::vector<std::pair<std::uint64_t, FaceRef>> edge_list_;
+  std::vector<std::pair<std::uint64_t, FaceRef>> edge_hash_;
   std::uint32_t random_state_ = 12345;
 };
 

@@ -4,6 +4,9 @@
 // Terms: a ghost tet (a, b, c, infinity) stands for the outside of hull face (a, b, c); it is in conflict with points
 // strictly beyond its face, and with coplanar ones when the real tet behind the face is.
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
 
 #include "delaunay/delaunay.hpp"
 
@@ -24,9 +27,40 @@ struct ExactView {
 };
 
 constexpr std::size_t kTableVertices = 32;   ///< balls up to this size are bonded through a table of directed edges
+constexpr double kSphereSlack = 1e-9;        ///< of a squared distance: nearer to a kept sphere the exact test decides
 constexpr std::uint64_t kLongWalk = 100000;  ///< steps after which a walk gives way to a scan of all tets
 
+/// Through the origin and a, b, c; bc = b x c, det = det[a, b, c].
+Circumsphere sphere_from_origin(const Point& a, const Point& b, const Point& c, const Point& bc, double det) {
+  const double aa = squared_length(a), bb = squared_length(b), cc = squared_length(c);
+  const Point offset = (aa * bc + bb * cross(c, a) + cc * cross(a, b)) / (2 * det);
+  const double longest = std::max({aa, bb, cc}), squared_radius = squared_length(offset);
+  // Condition longest^3 / det at most 1e4 keeps the relative error of the squared radius below 1e-10.
+  const bool is_sure = longest * longest * longest <= 1e8 * (det * det);
+  return {offset, is_sure ? squared_radius : -squared_radius};
+}
+
 }  // namespace
+
+Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const Point u = b - a, v = c - a, w = d - a, vw = cross(v, w);
+  const double det = dot(u, vw);
+  if (!(std::abs(det) > 0)) return {a, -std::numeric_limits<double>::infinity()};
+  Circumsphere s = sphere_from_origin(u, v, w, vw, det);
+  s.centre = s.centre + a;
+  if (!std::isfinite(s.squared_radius)) s.squared_radius = -std::numeric_limits<double>::infinity();
+  return s;
+}
+
+void DelaunayKernel::keep_spheres() {
+  DELFRONT_CHECK(c_.segment_points.empty());
+  spheres_.assign(c_.num_slots(), {});
+  for (TetIndex t = 0; t < c_.num_slots(); ++t) {
+    if (c_.is_dead(t) || c_.is_ghost(t)) continue;
+    const std::uint32_t* n = &c_.node[4 * t];
+    spheres_[t] = circumsphere(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3]));
+  }
+}
 
 std::uint32_t DelaunayKernel::random() {
   random_state_ = random_state_ * 1664525u + 1013904223u;
@@ -61,8 +95,13 @@ TetIndex DelaunayKernel::locate(VertexIndex v, TetIndex hint) {
 }
 
 DelaunayKernel::Insert DelaunayKernel::insert(VertexIndex v, TetIndex hint, const Limits& limits) {
-  return c_.segment_points.empty() ? insert_with(ExplicitView{c_}, v, hint, limits)
-                                   : insert_with(ExactView{c_}, v, hint, limits);
+  return insert_into(locate(v, hint), v, limits);
+}
+
+DelaunayKernel::Insert DelaunayKernel::insert_into(TetIndex holder, VertexIndex v, const Limits& limits) {
+  DELFRONT_CHECK(limits.constrained || spheres_.empty());
+  return c_.segment_points.empty() ? insert_with(ExplicitView{c_}, v, holder, limits)
+                                   : insert_with(ExactView{c_}, v, holder, limits);
 }
 
 template <class View>
@@ -107,6 +146,14 @@ TetIndex DelaunayKernel::walk(const View& view, VertexIndex v, TetIndex hint) {
 
 template <class View>
 bool DelaunayKernel::in_conflict(const View& view, TetIndex t, VertexIndex v) {
+  if (!spheres_.empty()) {
+    const Circumsphere& s = spheres_[t];
+    const double away = squared_length(c_.point(v) - s.centre), power = away - s.squared_radius;
+    if (s.is_sure() && std::abs(power) > kSphereSlack * (away + s.squared_radius)) {
+      ++counts.insphere_tests;
+      return power < 0;
+    }
+  }
   const std::uint32_t* n = &c_.node[4 * t];
   if (n[3] == kGhost) {
     const int side = orient3d(view(n[0]), view(n[1]), view(n[2]), view(v));
@@ -118,90 +165,137 @@ bool DelaunayKernel::in_conflict(const View& view, TetIndex t, VertexIndex v) {
   return insphere_perturbed(view(n[0]), view(n[1]), view(n[2]), view(n[3]), view(v)) > 0;
 }
 
+void DelaunayKernel::add_cavity_face(FaceRef ref, bool constrained) {
+  const auto [x, y, z] = c_.face_nodes(ref);
+  faces_.push_back({{x, y, z}, c_.neigh[ref], ref >> 2, {0, 0, 0}, constrained});
+}
+
+/// Breadth-first from `start`; leaves the cavity, its faces and the vertices it came to.
+/// @return false where a vertex is too close
 template <class View>
-void DelaunayKernel::grow_cavity(const View& view, TetIndex start, VertexIndex v, bool constrained) {
+bool DelaunayKernel::grow_cavity(const View& view, TetIndex start, VertexIndex v, const Limits& limits) {
+  const Point p = c_.point(v);
   cavity_.assign(1, start);
   tested_.clear();
+  faces_.clear();
+  reached_.assign(c_.node.begin() + 4 * start, c_.node.begin() + 4 * start + 4);
+  is_cavity_reduced_ = false;
+  for (const VertexIndex w : reached_)
+    if (is_too_close(w, p, limits.min_distance)) return false;
   c_.flag[start] |= TetComplex::marked;
   for (std::size_t i = 0; i < cavity_.size(); ++i) {
-    const TetIndex t = cavity_[i];
-    for (unsigned f = 0; f < 4; ++f) {
-      const TetIndex next = c_.neigh[4 * t + f] >> 2;
-      if (c_.flag[next] & (TetComplex::marked | TetComplex::visited)) continue;
-      if (constrained && c_.is_constrained(4 * t + f)) continue;
-      if (in_conflict(view, next, v)) {
+    for (FaceRef ref = 4 * cavity_[i]; ref < 4 * cavity_[i] + 4; ++ref) {
+      const FaceRef outer = c_.neigh[ref];
+      const TetIndex next = outer >> 2;
+      if (limits.constrained && c_.is_constrained(ref)) {
+        add_cavity_face(ref, true);
+      } else if (c_.flag[next] & TetComplex::marked) {
+        continue;
+      } else if (c_.flag[next] & TetComplex::visited) {
+        add_cavity_face(ref, c_.is_constrained(ref));
+      } else if (in_conflict(view, next, v)) {
+        if (is_too_close(c_.node[outer], p, limits.min_distance)) return false;
+        reached_.push_back(c_.node[outer]);
         c_.flag[next] |= TetComplex::marked;
         cavity_.push_back(next);
       } else {
         c_.flag[next] |= TetComplex::visited;
         tested_.push_back(next);
+        add_cavity_face(ref, c_.is_constrained(ref));
       }
     }
   }
+  return true;
 }
 
 void DelaunayKernel::collect_cavity_faces() {
   faces_.clear();
   for (const TetIndex t : cavity_) {
-    for (unsigned f = 0; f < 4; ++f) {
-      const FaceRef ref = 4 * t + f, outer = c_.neigh[ref];
+    for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
       const bool constrained = c_.is_constrained(ref);
-      if ((c_.flag[outer >> 2] & TetComplex::marked) && !constrained) continue;
-      const auto [x, y, z] = c_.face_nodes(ref);
-      faces_.push_back({{x, y, z}, outer, t, constrained});
+      if (!(c_.flag[c_.neigh[ref] >> 2] & TetComplex::marked) || constrained) add_cavity_face(ref, constrained);
     }
   }
+}
+
+/// Whether p sees the face from inside, with explicit vertices. The sphere through both comes out of the same numbers.
+bool DelaunayKernel::is_seen(CavityFace& face, const Point& p, Circumsphere& sphere) const {
+  const auto [x, y, z] = face.node;
+  if (x == kGhost || y == kGhost || z == kGhost) return false;
+  const Point a = c_.point(x) - p, b = c_.point(z) - p, c = c_.point(y) - p;
+  const Point bc = cross(b, c);
+  const double det = dot(a, bc);  // > 0 where (p, x, z, y) is positive
+  // The error bound of orient3d: the same differences, expanded along another row.
+  const double extent = detail::max3(a.x, b.x, c.x) * detail::max3(a.y, b.y, c.y) * detail::max3(a.z, b.z, c.z);
+  if (!(det > detail::kOrient3dBound * extent + detail::kTinyOrient3d)) {
+    sphere = circumsphere(p, c_.point(x), c_.point(z), c_.point(y));
+    return orient3d(c_.point(x), c_.point(y), c_.point(z), p) > 0;
+  }
+  sphere = sphere_from_origin(a, b, c, bc, det);
+  sphere.centre = sphere.centre + p;
+  return true;
 }
 
 template <class View>
 bool DelaunayKernel::make_star_shaped(const View& view, TetIndex start, VertexIndex v) {
   const auto p = view(v);
+  const Point at = c_.point(v);
+  const bool with_spheres = !spheres_.empty();
   for (bool changed = true; changed;) {
     changed = false;
-    collect_cavity_faces();
-    for (const CavityFace& face : faces_) {
+    face_spheres_.resize(with_spheres ? faces_.size() : 0);
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      CavityFace& face = faces_[i];
       if (!(c_.flag[face.inner] & TetComplex::marked)) continue;
       const auto [x, y, z] = face.node;
-      const bool is_seen = x != kGhost && y != kGhost && z != kGhost && orient3d(view(x), view(y), view(z), p) > 0;
-      if (is_seen) continue;
+      if (with_spheres ? is_seen(face, at, face_spheres_[i])
+                       : x != kGhost && y != kGhost && z != kGhost && orient3d(view(x), view(y), view(z), p) > 0)
+        continue;
       if (face.inner == start) return false;
-      c_.flag[face.inner] =
-          static_cast<std::uint16_t>((c_.flag[face.inner] & ~TetComplex::marked) | TetComplex::visited);
+      c_.flag[face.inner] = static_cast<std::uint16_t>((c_.flag[face.inner] & ~TetComplex::marked) | TetComplex::visited);
       tested_.push_back(face.inner);
       changed = true;
     }
-    if (changed) std::erase_if(cavity_, [&](TetIndex t) { return !(c_.flag[t] & TetComplex::marked); });
+    if (!changed) break;
+    is_cavity_reduced_ = true;
+    std::erase_if(cavity_, [&](TetIndex t) { return !(c_.flag[t] & TetComplex::marked); });
+    collect_cavity_faces();
   }
   return true;
 }
 
-/// Vertices inside of the cavity would vanish. Leaves the cavity's boundary vertices in ball_vertices_.
-bool DelaunayKernel::swallows_a_vertex() {
+bool DelaunayKernel::is_in_ball(VertexIndex v) const {
+  const std::uint32_t slot = slot_of_vertex_[v + 1];
+  return slot < ball_vertices_.size() && ball_vertices_[slot] == v;
+}
+
+/// Numbers the vertices of the cavity's boundary from 0, into ball_vertices_ and the faces.
+void DelaunayKernel::number_ball_vertices() {
   slot_of_vertex_.resize(c_.num_vertices() + 1);
   ball_vertices_.clear();
-  auto is_in_ball = [&](VertexIndex v) {
-    const std::uint32_t slot = slot_of_vertex_[v + 1];
-    return slot < ball_vertices_.size() && ball_vertices_[slot] == v;
-  };
-  for (const CavityFace& face : faces_)
-    for (const VertexIndex v : face.node)
+  for (CavityFace& face : faces_)
+    for (unsigned k = 0; k < 3; ++k) {
+      const VertexIndex v = face.node[k];
       if (!is_in_ball(v)) {
         slot_of_vertex_[v + 1] = static_cast<std::uint32_t>(ball_vertices_.size());
         ball_vertices_.push_back(v);
       }
+      face.slot[k] = slot_of_vertex_[v + 1];
+    }
+}
+
+/// Vertices inside of the cavity would vanish.
+bool DelaunayKernel::swallows_a_vertex() const {
+  if (!is_cavity_reduced_)
+    return !std::all_of(reached_.begin(), reached_.end(), [&](VertexIndex w) { return is_in_ball(w); });
   for (const TetIndex t : cavity_)
     for (unsigned i = 0; i < 4; ++i)
       if (!is_in_ball(c_.node[4 * t + i])) return true;
   return false;
 }
 
-bool DelaunayKernel::is_too_close(VertexIndex v, double min_distance) const {
-  const Point p = c_.point(v);
-  const double limit = min_distance * min_distance;
-  for (const CavityFace& face : faces_)
-    for (const VertexIndex w : face.node)
-      if (w != kGhost && squared_length(c_.point(w) - p) < limit) return true;
-  return false;
+bool DelaunayKernel::is_too_close(VertexIndex w, const Point& p, double min_distance) const {
+  return min_distance > 0 && w != kGhost && squared_length(c_.point(w) - p) < min_distance * min_distance;
 }
 
 void DelaunayKernel::clear_marks() {
@@ -211,10 +305,9 @@ void DelaunayKernel::clear_marks() {
 }
 
 template <class View>
-DelaunayKernel::Insert DelaunayKernel::insert_with(const View& view, VertexIndex v, TetIndex hint,
+DelaunayKernel::Insert DelaunayKernel::insert_with(const View& view, VertexIndex v, TetIndex start,
                                                    const Limits& limits) {
   made_.clear();
-  const TetIndex start = walk(view, v, hint);
   if (limits.constrained && c_.is_ghost(start)) return Insert::outside;
   if (!c_.is_ghost(start))
     for (unsigned i = 0; i < 4; ++i) {
@@ -224,20 +317,14 @@ DelaunayKernel::Insert DelaunayKernel::insert_with(const View& view, VertexIndex
         return Insert::duplicate;
       }
     }
-  grow_cavity(view, start, v, limits.constrained);
-  if (limits.constrained) {
-    if (!make_star_shaped(view, start, v) || swallows_a_vertex()) {
-      clear_marks();
-      return Insert::not_visible;
-    }
-  } else {
-    collect_cavity_faces();
-  }
-  if (limits.min_distance > 0 && is_too_close(v, limits.min_distance)) {
+  if (!grow_cavity(view, start, v, limits)) {
     clear_marks();
     return Insert::too_close;
   }
+  const bool is_star_shaped = !limits.constrained || make_star_shaped(view, start, v);
+  if (is_star_shaped) number_ball_vertices();
   clear_marks();
+  if (!is_star_shaped || (limits.constrained && swallows_a_vertex())) return Insert::not_visible;
   fill_cavity(v);
   ++counts.points;
   counts.tets_deleted += cavity_.size();
@@ -256,11 +343,12 @@ void DelaunayKernel::fill_cavity(VertexIndex v) {
     auto [x, y, z] = faces_[i].node;
     const TetIndex t = made_[i];
     if (x == kGhost || z == kGhost) {  // rotate the ghost into the middle, where it becomes node 3
-      const auto [a, b, c] = faces_[i].node;
-      if (x == kGhost) x = c, y = a, z = b;
-      if (c == kGhost) x = b, y = c, z = a;
+      CavityFace& face = faces_[i];
+      const std::ptrdiff_t first = x == kGhost ? 2 : 1;
+      std::rotate(face.node, face.node + first, face.node + 3);
+      std::rotate(face.slot, face.slot + first, face.slot + 3);
+      x = face.node[0], y = face.node[1], z = face.node[2];
     }
-    faces_[i].node[0] = x, faces_[i].node[1] = y, faces_[i].node[2] = z;
     c_.set_nodes(t, v, x, z, y);
     c_.flag[t] = static_cast<std::uint16_t>(TetComplex::fresh | (faces_[i].constrained ? 1 : 0));
     c_.region[t] = y == kGhost ? TetComplex::kOutside : colour;
@@ -269,48 +357,52 @@ void DelaunayKernel::fill_cavity(VertexIndex v) {
     c_.vertex_tet[z] = t;
     if (y != kGhost) c_.vertex_tet[y] = t;
   }
+  if (!spheres_.empty()) {
+    spheres_.resize(c_.num_slots());
+    for (std::size_t i = 0; i < faces_.size(); ++i) spheres_[made_[i]] = face_spheres_[i];
+  }
   c_.vertex_tet[v] = made_[0];
   last_tet = made_[0];
   bond_new_tets();
 }
 
+// Nodes 1, 2, 3 of the new tet are x, z, y: the edge opposite x is y -> z, and so on.
+constexpr unsigned kFaceOfEdge[3] = {2, 1, 3};  // edges x -> y (opposite z), y -> z (opposite x), z -> x (opposite y)
+
 /// The face of tet (v, x, z, y) over the directed edge a -> b of its outer face meets the one over b -> a.
 void DelaunayKernel::bond_new_tets() {
-  slot_of_vertex_.resize(c_.num_vertices() + 1);
-  ball_vertices_.clear();
-  auto slot = [&](VertexIndex v) {
-    std::uint32_t& s = slot_of_vertex_[v + 1];
-    if (s >= ball_vertices_.size() || ball_vertices_[s] != v) {
-      s = static_cast<std::uint32_t>(ball_vertices_.size());
-      ball_vertices_.push_back(v);
-    }
-    return s;
-  };
-  // Nodes 1, 2, 3 of the new tet are x, z, y: the edge opposite x is y -> z, and so on.
-  constexpr unsigned kFaceOfEdge[3] = {2, 1, 3};  // edges x -> y (opposite z), y -> z (opposite x), z -> x (opposite y)
-  if (faces_.size() <= 2 * kTableVertices - 4) {
-    edge_table_.resize(kTableVertices * kTableVertices);
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      const std::uint32_t s[3] = {slot(faces_[i].node[0]), slot(faces_[i].node[1]), slot(faces_[i].node[2])};
-      for (unsigned k = 0; k < 3; ++k)
-        edge_table_[kTableVertices * s[k] + s[(k + 1) % 3]] = 4 * made_[i] + kFaceOfEdge[k];
-    }
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      const std::uint32_t s[3] = {slot(faces_[i].node[0]), slot(faces_[i].node[1]), slot(faces_[i].node[2])};
-      for (unsigned k = 0; k < 3; ++k)
-        c_.neigh[4 * made_[i] + kFaceOfEdge[k]] = edge_table_[kTableVertices * s[(k + 1) % 3] + s[k]];
-    }
-    return;
+  if (ball_vertices_.size() > kTableVertices) return bond_by_hash();
+  edge_table_.resize(kTableVertices * kTableVertices);
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const std::uint32_t* s = faces_[i].slot;
+    for (unsigned k = 0; k < 3; ++k)
+      edge_table_[kTableVertices * s[k] + s[(k + 1) % 3]] = 4 * made_[i] + kFaceOfEdge[k];
   }
-  edge_list_.clear();
-  for (std::size_t i = 0; i < faces_.size(); ++i)
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const std::uint32_t* s = faces_[i].slot;
+    for (unsigned k = 0; k < 3; ++k)
+      c_.neigh[4 * made_[i] + kFaceOfEdge[k]] = edge_table_[kTableVertices * s[(k + 1) % 3] + s[k]];
+  }
+}
+
+/// For balls of any size: open addressing by the undirected edge.
+void DelaunayKernel::bond_by_hash() {
+  constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+  const std::size_t size = std::bit_ceil(4 * faces_.size()), mask = size - 1;
+  edge_hash_.assign(size, {kEmpty, kNoIndex});
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
     for (unsigned k = 0; k < 3; ++k) {
-      const std::uint64_t a = slot(faces_[i].node[k]), b = slot(faces_[i].node[(k + 1) % 3]);
-      const std::uint64_t key = (std::min(a, b) << 32) | std::max(a, b);
-      edge_list_.push_back({key, 4 * made_[i] + kFaceOfEdge[k]});
+      const auto [a, b] = std::minmax(faces_[i].slot[k], faces_[i].slot[(k + 1) % 3]);
+      const std::uint64_t key = std::uint64_t{a} << 32 | b;
+      const FaceRef ref = 4 * made_[i] + kFaceOfEdge[k];
+      std::size_t at = static_cast<std::size_t>(key * 0x9e3779b97f4a7c15ull >> 32) & mask;
+      while (edge_hash_[at].first != kEmpty && edge_hash_[at].first != key) at = (at + 1) & mask;
+      if (edge_hash_[at].first == key)
+        c_.bond(edge_hash_[at].second, ref);
+      else
+        edge_hash_[at] = {key, ref};
     }
-  std::sort(edge_list_.begin(), edge_list_.end());
-  for (std::size_t i = 0; i + 1 < edge_list_.size(); i += 2) c_.bond(edge_list_[i].second, edge_list_[i + 1].second);
+  }
 }
 
 }  // namespace delfront
