@@ -15,7 +15,7 @@ struct KernelCounts {
 };
 
 /// @brief Circumsphere in plain arithmetic; squared_radius is negative where rounding may have spoilt it, -inf at worst.
-struct Circumsphere {
+struct alignas(32) Circumsphere {
   Point centre;
   double squared_radius = -1;
   bool is_sure() const { return squared_radius > 0; }
@@ -87,6 +87,7 @@ class DelaunayKernel {
   bool in_conflict(const View& view, TetIndex t, VertexIndex v);
   template <class View>
   bool grow_cavity(const View& view, TetIndex start, VertexIndex v, const Limits& limits);
+  void prefetch_neighbours(TetIndex t) const;
   void collect_cavity_faces();
   void add_cavity_face(FaceRef ref, bool constrained);
   template <class View>

@@ -26,7 +26,7 @@ struct ExactView {
   ExactPoint operator()(VertexIndex v) const { return c.exact(v); }
 };
 
-constexpr std::size_t kTableVertices = 32;   ///< balls up to this size are bonded through a table of directed edges
+constexpr std::size_t kTableVertices = 64;   ///< balls up to this size are bonded through a table of directed edges
 constexpr double kSphereSlack = 1e-9;        ///< of a squared distance: nearer to a kept sphere the exact test decides
 constexpr std::uint64_t kLongWalk = 100000;  ///< steps after which a walk gives way to a scan of all tets
 
@@ -170,6 +170,18 @@ void DelaunayKernel::add_cavity_face(FaceRef ref, bool constrained) {
   faces_.push_back({{x, y, z}, c_.neigh[ref], ref >> 2, {0, 0, 0}, constrained});
 }
 
+/// What in_conflict reads, fetched early: its time is the memory's.
+void DelaunayKernel::prefetch_neighbours(TetIndex t) const {
+  for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
+    const TetIndex next = c_.neigh[ref] >> 2;
+    __builtin_prefetch(&c_.flag[next], 1);
+    if (!spheres_.empty())
+      __builtin_prefetch(&spheres_[next]);
+    else
+      __builtin_prefetch(&c_.node[4 * next]);
+  }
+}
+
 /// Breadth-first from `start`; leaves the cavity, its faces and the vertices it came to.
 /// @return false where a vertex is too close
 template <class View>
@@ -184,6 +196,7 @@ bool DelaunayKernel::grow_cavity(const View& view, TetIndex start, VertexIndex v
     if (is_too_close(w, p, limits.min_distance)) return false;
   c_.flag[start] |= TetComplex::marked;
   for (std::size_t i = 0; i < cavity_.size(); ++i) {
+    if (i + 1 < cavity_.size()) prefetch_neighbours(cavity_[i + 1]);
     for (FaceRef ref = 4 * cavity_[i]; ref < 4 * cavity_[i] + 4; ++ref) {
       const FaceRef outer = c_.neigh[ref];
       const TetIndex next = outer >> 2;
@@ -197,6 +210,8 @@ bool DelaunayKernel::grow_cavity(const View& view, TetIndex start, VertexIndex v
         if (is_too_close(c_.node[outer], p, limits.min_distance)) return false;
         reached_.push_back(c_.node[outer]);
         c_.flag[next] |= TetComplex::marked;
+        __builtin_prefetch(&c_.neigh[4 * next]);
+        __builtin_prefetch(&c_.node[4 * next]);
         cavity_.push_back(next);
       } else {
         c_.flag[next] |= TetComplex::visited;

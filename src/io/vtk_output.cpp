@@ -37,11 +37,18 @@ VtkOutput::VtkOutput(Output& out, const WriteOptions& options, const std::string
                         type, compress_ ? " compressor=\"vtkZLibDataCompressor\"" : ""));
 }
 
-void VtkOutput::open(const std::string& tag) { out_.text(fmt::format("{:{}}<{}>\n", "", depth_++, tag)); }
+void VtkOutput::open(const std::string& tag) { put(fmt::format("{:{}}<{}>\n", "", depth_++, tag)); }
 
-void VtkOutput::close(const std::string& tag) { out_.text(fmt::format("{:{}}</{}>\n", "", --depth_, tag)); }
+void VtkOutput::close(const std::string& tag) { put(fmt::format("{:{}}</{}>\n", "", --depth_, tag)); }
 
-void VtkOutput::line(const std::string& text) { out_.text(fmt::format("{:{}}{}\n", "", depth_, text)); }
+void VtkOutput::line(const std::string& text) { put(fmt::format("{:{}}{}\n", "", depth_, text)); }
+
+void VtkOutput::put(const std::string& text) {
+  if (pending_.empty())
+    out_.text(text);
+  else
+    pending_.back().text_after += text;
+}
 
 void VtkOutput::add(const char* type, std::size_t size, const std::string& name, int components,
                     std::vector<std::string_view> pieces) {
@@ -53,17 +60,15 @@ void VtkOutput::add(const char* type, std::size_t size, const std::string& name,
     line("</DataArray>");
     return;
   }
-  line(fmt::format("{} format=\"appended\" offset=\"{}\"/>", head, offset_));
+  put(fmt::format("{:{}}{} format=\"appended\" offset=\"", "", depth_, head));
   if (compress_) {
     const std::string& packed = kept_.emplace_back(compress(pieces));
-    pending_.push_back({{packed}, packed.size()});
-    offset_ += packed.size();
+    pending_.push_back({{packed}, packed.size(), "\"/>\n"});
     return;
   }
   std::uint64_t bytes = 0;
   for (std::string_view piece : pieces) bytes += piece.size();
-  pending_.push_back({std::move(pieces), bytes});
-  offset_ += sizeof(bytes) + bytes;
+  pending_.push_back({std::move(pieces), bytes, "\"/>\n"});
 }
 
 void VtkOutput::write_text(const std::string& type, std::size_t size, const std::vector<std::string_view>& pieces) {
@@ -104,11 +109,18 @@ std::string VtkOutput::compress(const std::vector<std::string_view>& pieces) {
 }
 
 void VtkOutput::finish() {
+  std::uint64_t offset = 0;
+  for (const Pending& pending : pending_) offset += size_in_file(pending);
+  for (const Pending& pending : pending_) {
+    offset -= size_in_file(pending);
+    out_.text(std::to_string(offset));
+    out_.text(pending.text_after);
+  }
   if (!is_text_) {
     out_.text(" <AppendedData encoding=\"raw\">\n_");
-    for (const Pending& pending : pending_) {
-      if (!compress_) out_.binary(pending.bytes);
-      for (std::string_view piece : pending.pieces) out_.text(piece);
+    for (auto pending = pending_.rbegin(); pending != pending_.rend(); ++pending) {
+      if (!compress_) out_.binary(pending->bytes);
+      for (std::string_view piece : pending->pieces) out_.text(piece);
     }
     out_.text("\n </AppendedData>\n");
   }

@@ -14,6 +14,10 @@ namespace delfront {
 /// @brief Writes a VTK XML file: tags as they come, arrays appended raw at the end (or inline as text).
 ///
 /// begin() … open/close/array … finish(). Array data must live until finish(), except what own() keeps.
+///
+/// The last array stands first in the appended data. meshio (5.3) looks an array up by its offset, first match in the
+/// order of the tags, and overwrites the offsets of those it has read; only in this order can it never meet one of
+/// these by chance.
 class VtkOutput {
  public:
   VtkOutput(Output& out, const WriteOptions& options, const std::string& type);
@@ -43,7 +47,10 @@ class VtkOutput {
   struct Pending {
     std::vector<std::string_view> pieces;
     std::uint64_t bytes;
+    std::string text_after;  ///< from behind the offset to the next array's
   };
+  std::uint64_t size_in_file(const Pending& p) const { return p.bytes + (compress_ ? 0 : sizeof(p.bytes)); }
+  void put(const std::string& text);
   static const char* type_name(double) { return "Float64"; }
   static const char* type_name(std::int32_t) { return "Int32"; }
   static const char* type_name(std::uint32_t) { return "Int32"; }
@@ -57,7 +64,6 @@ class VtkOutput {
   Output& out_;
   bool is_text_, compress_;
   int depth_ = 1;
-  std::uint64_t offset_ = 0;
   std::deque<std::string> kept_;
   std::vector<Pending> pending_;
 };

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/hilbert.hpp"
 
@@ -21,25 +20,16 @@ constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;  ///< of the wanted size, between points
 constexpr double kEnough = 1e-3;       ///< share of proposals that still succeed, below which a round was the last
 constexpr std::size_t kPointsPerCancelCheck = 4096;
-
-struct Sphere {
-  Point centre;
-  double radius = 0;
-};
-
-Sphere circumsphere(Point a, Point b, Point c, Point d) {
-  const Point u = b - a, v = c - a, w = d - a;
-  const double det = 2 * dot(cross(u, v), w);
-  if (!(std::abs(det) > 0)) return {a, std::numeric_limits<double>::infinity()};
-  const Point offset =
-      (squared_length(u) * cross(v, w) + squared_length(v) * cross(w, u) + squared_length(w) * cross(u, v)) / det;
-  return {a + offset, length(offset)};
-}
+constexpr std::size_t kRecent = 16;
+constexpr double kFar = 1e150;
+constexpr std::size_t kWorthRadixSort = 4096;
 
 struct Proposal {
   Point at;
   TetIndex tet;
-  double size;  ///< wanted there: first interpolated, then asked of the field
+  VertexIndex near;  ///< a vertex near it
+  std::uint32_t region;
+  std::uint8_t way;  ///< which of the tet's proposals it is, as a State bit
 };
 
 class Refinement {
@@ -48,8 +38,12 @@ class Refinement {
       : c_(complex), size_(size), context_(context), kernel_(complex) {}
 
   RefineReport run() {
-    for (TetIndex t = 0; t < c_.num_slots(); ++t) pending_.push_back(t);
+    kernel_.keep_spheres();
+    recent_.fill({kFar, kFar, kFar});
+    state_.assign(c_.num_slots(), queued);
+    for (TetIndex t = 0; t < c_.num_slots(); ++t) fresh_.push_back(t);
     for (bool frontal = true;;) {
+      classify_fresh();
       propose(frontal);
       ask_sizes();
       const std::size_t inserted = insert();
@@ -57,11 +51,21 @@ class Refinement {
       if (static_cast<double>(inserted) > kEnough * static_cast<double>(proposals_.size())) continue;
       if (!frontal) break;
       frontal = false;  // what the front could not reach: circumcentres, until those end too
+      for (TetIndex t = 0; t < c_.num_slots(); ++t) enqueue(t);
     }
     return report_;
   }
 
  private:
+  /// What is known of a tet; all of it goes when its slot is used again.
+  enum State : std::uint8_t {
+    refused_0 = 1,  ///< bits 0-3: the point over face f was refused; that would happen again
+    refused_centre = 1 << 4,
+    accepted = 1 << 5,
+    large = 1 << 6,  ///< not accepted
+    queued = 1 << 7  ///< in fresh_, or in candidates_ while that is put together
+  };
+
   bool is_live(TetIndex t) const { return !c_.is_dead(t) && !c_.is_ghost(t); }
 
   double mean_size(TetIndex t) const {
@@ -69,44 +73,60 @@ class Refinement {
     return (c_.vertex[n[0]].h + c_.vertex[n[1]].h + c_.vertex[n[2]].h + c_.vertex[n[3]].h) / 4;
   }
 
-  Sphere sphere(TetIndex t) const {
-    const std::uint32_t* n = &c_.node[4 * t];
-    return circumsphere(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3]));
+  bool is_accepted(TetIndex t) const {
+    const double radius = kAcceptedRadius * mean_size(t);
+    return std::abs(kernel_.sphere(t).squared_radius) <= radius * radius;
   }
 
-  bool is_accepted(TetIndex t) const { return sphere(t).radius <= kAcceptedRadius * mean_size(t); }
+  void enqueue(TetIndex t) {
+    if (state_[t] & queued) return;
+    state_[t] |= queued;
+    fresh_.push_back(t);
+  }
 
-  /// One proposal at most from each pending tet; accepted tets leave the list, the others stay on it.
-  void propose(bool frontal) {
-    std::sort(pending_.begin(), pending_.end());
-    pending_.erase(std::unique(pending_.begin(), pending_.end()), pending_.end());
-    proposals_.clear();
-    std::size_t kept = 0;
-    accepted_.resize(c_.num_slots(), unknown);
-    for (const TetIndex t : pending_) accepted_[t] = is_live(t) ? (is_accepted(t) ? yes : no) : unknown;
-    for (const TetIndex t : pending_) {
-      if (accepted_[t] != no) continue;
-      pending_[kept++] = t;
-      const Sphere s = sphere(t);
-      if (!std::isfinite(s.radius)) continue;
-      if (!frontal)
-        proposals_.push_back({s.centre, t, mean_size(t)});
-      else
-        propose_over_face(t, s);
+  /// Who may propose now and could not before: fresh tets, and tets that the front has come to.
+  void classify_fresh() {
+    for (const TetIndex t : fresh_) {
+      state_[t] &= static_cast<std::uint8_t>(~queued);
+      if (is_live(t) && !(state_[t] & (accepted | large))) state_[t] |= is_accepted(t) ? accepted : large;
     }
-    pending_.resize(kept);
+    candidates_.clear();
+    auto add = [&](TetIndex t) {
+      if ((state_[t] & (large | queued)) != large) return;
+      state_[t] |= queued;
+      candidates_.push_back(t);
+    };
+    for (const TetIndex t : fresh_) {
+      if (!is_live(t)) continue;
+      add(t);
+      if (state_[t] & accepted)
+        for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) add(c_.neigh[ref] >> 2);
+    }
+    for (const TetIndex t : candidates_) state_[t] &= static_cast<std::uint8_t>(~queued);
+    fresh_.clear();
+  }
+
+  void propose(bool frontal) {
+    proposals_.clear();
+    for (const TetIndex t : candidates_) {
+      const Circumsphere& s = kernel_.sphere(t);
+      if (!std::isfinite(s.squared_radius)) continue;
+      if (frontal)
+        propose_over_face(t, s);
+      else if (!(state_[t] & refused_centre))
+        proposals_.push_back({s.centre, t, c_.node[4 * t], c_.region[t], refused_centre});
+    }
     report_.candidates += proposals_.size();
   }
 
   /// Over the front face whose point would lie nearest to it.
-  void propose_over_face(TetIndex t, const Sphere& s) {
+  void propose_over_face(TetIndex t, const Circumsphere& s) {
     bool found = false;
     double best = 0;
-    Proposal proposal{{}, t, 0};
+    Proposal proposal{{}, t, kNoIndex, c_.region[t], 0};
     for (unsigned f = 0; f < 4; ++f) {
       const FaceRef ref = 4 * t + f;
-      const TetIndex other = c_.neigh[ref] >> 2;
-      if (!c_.is_constrained(ref) && accepted_[other] != yes) continue;
+      if (!c_.is_constrained(ref) && !(state_[c_.neigh[ref] >> 2] & accepted)) continue;
       const auto n = c_.face_nodes(ref);
       const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
       Point normal = cross(b - a, c - a);
@@ -120,11 +140,12 @@ class Refinement {
       const double wanted = std::sqrt(std::max(h * h - r2, 0.25 * h * h));
       if (up <= 0 || (found && wanted >= best)) continue;
       proposal.at = foot + std::min(wanted, up) * normal;
-      proposal.size = h;
+      proposal.way = static_cast<std::uint8_t>(refused_0 << f);
+      proposal.near = n[0];
       best = wanted;
       found = true;
     }
-    if (found) proposals_.push_back(proposal);
+    if (found && !(state_[t] & proposal.way)) proposals_.push_back(proposal);
   }
 
   /// Along the curve, all at once.
@@ -135,7 +156,10 @@ class Refinement {
     order_.clear();
     for (std::size_t i = 0; i < proposals_.size(); ++i)
       order_.push_back({curve.key(proposals_[i].at), static_cast<std::uint32_t>(i)});
-    radix_sort(order_);
+    if (order_.size() < kWorthRadixSort)
+      std::sort(order_.begin(), order_.end());
+    else
+      radix_sort(order_);
     places_.clear();
     for (const auto& [key, i] : order_) places_.push_back(proposals_[i].at);
     sizes_.resize(places_.size());
@@ -150,41 +174,63 @@ class Refinement {
         context_.check_cells(c_.num_live());
       }
       const Proposal& p = proposals_[order_[k].second];
-      if (is_live(p.tet) && insert_one(p, sizes_[k])) ++inserted;
+      if (!is_unchanged(p.tet) && is_near_recent(p.at, kMinDistance * sizes_[k])) {
+        /*RECENT*/
+        continue;
+      }
+      if (insert_one(p, sizes_[k]))
+        ++inserted;
+      else if (is_unchanged(p.tet))
+        state_[p.tet] |= p.way;
     }
-    report_.points_inserted += inserted;
     return inserted;
   }
 
+  /// Whether one of the points inserted last is in the way: what most proposals of tets that are gone run into.
+  bool is_near_recent(const Point& p, double distance) const {
+    for (const Point& q : recent_)
+      if (squared_length(p - q) < distance * distance) return true;
+    return false;
+  }
+
+  /// Whether the slot still has the tet that stood there when the round began.
+  bool is_unchanged(TetIndex t) const { return is_live(t) && !(state_[t] & queued); }
+
   bool insert_one(const Proposal& p, double h) {
-    const std::uint32_t colour = c_.region[p.tet];
     const VertexIndex v = c_.add_vertex(p.at, h);
-    const TetIndex holder = kernel_.locate(v, p.tet);
+    const bool is_there = is_unchanged(p.tet);
+    TetIndex holder = kernel_.locate(v, is_there ? p.tet : c_.vertex_tet[p.near]);
+    if (c_.is_ghost(holder) && !is_there) holder = kernel_.locate(v, p.tet);  // the first walk may have left a hollow
     bool done = false;
-    if (!c_.is_ghost(holder) && c_.region[holder] == colour)
-      done = kernel_.insert(v, holder, {.min_distance = kMinDistance * h, .constrained = true}) ==
+    if (!c_.is_ghost(holder) && c_.region[holder] == p.region)
+      done = kernel_.insert_into(holder, v, {.min_distance = kMinDistance * h, .constrained = true}) ==
              DelaunayKernel::Insert::done;
     if (!done) {
       c_.remove_last_vertex();
       return false;
     }
-    for (const TetIndex t : kernel_.made()) pending_.push_back(t);
+    recent_[report_.points_inserted++ % kRecent] = p.at;
+    state_.resize(c_.num_slots(), 0);
+    for (const TetIndex t : kernel_.made()) {
+      if (!(state_[t] & queued)) fresh_.push_back(t);
+      state_[t] = queued;
+    }
     return true;
   }
-
-  enum Accepted : std::uint8_t { unknown, no, yes };
 
   TetComplex& c_;
   const SizeField& size_;
   Context& context_;
   DelaunayKernel kernel_;
   RefineReport report_;
-  std::vector<TetIndex> pending_;
-  std::vector<Accepted> accepted_;  ///< by tet, as of the last time it was pending
+  std::vector<std::uint8_t> state_;  ///< by tet, bits of State
+  std::vector<TetIndex> fresh_;      ///< made since the last round
+  std::vector<TetIndex> candidates_;
   std::vector<Proposal> proposals_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;
   std::vector<Point> places_;
   std::vector<double> sizes_;
+  std::array<Point, kRecent> recent_;
 };
 
 }  // namespace
