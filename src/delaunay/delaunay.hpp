@@ -14,7 +14,8 @@ struct KernelCounts {
   std::uint64_t points = 0, walk_steps = 0, insphere_tests = 0, tets_deleted = 0, tets_created = 0;
 };
 
-/// @brief Circumsphere in plain arithmetic; squared_radius is negative where rounding may have spoilt it, -inf at worst.
+/// @brief Circumsphere in plain arithmetic; squared_radius is negative where rounding may have spoilt it, -inf at
+/// worst.
 struct alignas(32) Circumsphere {
   Point centre;
   double squared_radius = -1;
@@ -49,7 +50,8 @@ class DelaunayKernel {
   void start(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d);
 
   /// @brief The tet that holds vertex v's place (a ghost where it lies outside of the hull), walking from `hint`.
-  TetIndex locate(VertexIndex v, TetIndex hint);
+  /// @param max_steps  > 0: kNoIndex where it is not found in so many; else all tets are tried after a long walk
+  TetIndex locate(VertexIndex v, TetIndex hint, std::uint64_t max_steps = 0);
 
   /// @brief Insert vertex v, whose place stands in the complex already. `hint`: a live tet near it, or kNoIndex.
   Insert insert(VertexIndex v, TetIndex hint, const Limits& limits);
@@ -80,7 +82,7 @@ class DelaunayKernel {
   };
 
   template <class View>
-  TetIndex walk(const View& view, VertexIndex v, TetIndex hint);
+  TetIndex walk(const View& view, VertexIndex v, TetIndex hint, std::uint64_t max_steps);
   template <class View>
   Insert insert_with(const View& view, VertexIndex v, TetIndex start, const Limits& limits);
   template <class View>
@@ -108,8 +110,8 @@ class DelaunayKernel {
   std::vector<VertexIndex> reached_;  ///< every vertex of the grown cavity, some of them more than once
   bool is_cavity_reduced_ = false;    ///< since it was grown: reached_ may have too many
   std::vector<CavityFace> faces_;
-  std::vector<Circumsphere> face_spheres_;  ///< of the tet over each of faces_, where spheres are kept
-  std::vector<Circumsphere> spheres_;       ///< by tet, or empty
+  std::vector<Circumsphere> face_spheres_;     ///< of the tet over each of faces_, where spheres are kept
+  std::vector<Circumsphere> spheres_;          ///< by tet, or empty
   std::vector<std::uint32_t> slot_of_vertex_;  ///< by vertex + 1 (ghost: 0): a sparse set, never cleared
   std::vector<VertexIndex> ball_vertices_;
   std::vector<FaceRef> edge_table_;

@@ -26,9 +26,9 @@ struct ExactView {
   ExactPoint operator()(VertexIndex v) const { return c.exact(v); }
 };
 
-constexpr std::size_t kTableVertices = 64;   ///< balls up to this size are bonded through a table of directed edges
-constexpr double kSphereSlack = 1e-9;        ///< of a squared distance: nearer to a kept sphere the exact test decides
-constexpr std::uint64_t kLongWalk = 100000;  ///< steps after which a walk gives way to a scan of all tets
+constexpr std::size_t kTableVertices = 64;  ///< balls up to this size are bonded through a table of directed edges
+constexpr double kSphereSlack = 1e-9;       ///< of a squared distance: nearer to a kept sphere the exact test decides
+constexpr std::uint64_t kLongWalk = 1000;  ///< steps, and a quarter of the tets, after which a walk gives way to a scan
 
 /// Through the origin and a, b, c; bc = b x c, det = det[a, b, c].
 Circumsphere sphere_from_origin(const Point& a, const Point& b, const Point& c, const Point& bc, double det) {
@@ -90,8 +90,9 @@ void DelaunayKernel::start(VertexIndex a, VertexIndex b, VertexIndex c, VertexIn
   last_tet = inner;
 }
 
-TetIndex DelaunayKernel::locate(VertexIndex v, TetIndex hint) {
-  return c_.segment_points.empty() ? walk(ExplicitView{c_}, v, hint) : walk(ExactView{c_}, v, hint);
+TetIndex DelaunayKernel::locate(VertexIndex v, TetIndex hint, std::uint64_t max_steps) {
+  return c_.segment_points.empty() ? walk(ExplicitView{c_}, v, hint, max_steps)
+                                   : walk(ExactView{c_}, v, hint, max_steps);
 }
 
 DelaunayKernel::Insert DelaunayKernel::insert(VertexIndex v, TetIndex hint, const Limits& limits) {
@@ -105,12 +106,13 @@ DelaunayKernel::Insert DelaunayKernel::insert_into(TetIndex holder, VertexIndex 
 }
 
 template <class View>
-TetIndex DelaunayKernel::walk(const View& view, VertexIndex v, TetIndex hint) {
+TetIndex DelaunayKernel::walk(const View& view, VertexIndex v, TetIndex hint, std::uint64_t max_steps) {
   TetIndex t = hint == kNoIndex || c_.is_dead(hint) ? last_tet : hint;
   if (c_.is_ghost(t)) t = c_.neigh[4 * t + 3] >> 2;
   const auto p = view(v);
   unsigned entered = 4;
-  for (std::uint64_t steps = 0; steps < kLongWalk; ++steps) {
+  const std::uint64_t last_step = max_steps > 0 ? max_steps : kLongWalk + c_.num_slots() / 4;
+  for (std::uint64_t steps = 0; steps < last_step; ++steps) {
     ++counts.walk_steps;
     const unsigned first = random();
     unsigned leave = 4;
@@ -126,6 +128,7 @@ TetIndex DelaunayKernel::walk(const View& view, VertexIndex v, TetIndex hint) {
     entered = next & 3;
     if (c_.is_ghost(t)) return t;
   }
+  if (max_steps > 0) return kNoIndex;
   // A walk this long is wandering: in a complex that is not Delaunay it may do so for ever.
   for (t = 0; t < c_.num_slots(); ++t) {
     if (c_.is_dead(t) || c_.is_ghost(t)) continue;
@@ -267,7 +270,8 @@ bool DelaunayKernel::make_star_shaped(const View& view, TetIndex start, VertexIn
                        : x != kGhost && y != kGhost && z != kGhost && orient3d(view(x), view(y), view(z), p) > 0)
         continue;
       if (face.inner == start) return false;
-      c_.flag[face.inner] = static_cast<std::uint16_t>((c_.flag[face.inner] & ~TetComplex::marked) | TetComplex::visited);
+      c_.flag[face.inner] =
+          static_cast<std::uint16_t>((c_.flag[face.inner] & ~TetComplex::marked) | TetComplex::visited);
       tested_.push_back(face.inner);
       changed = true;
     }

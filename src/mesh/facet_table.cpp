@@ -2,6 +2,8 @@
 #include "mesh/facet_table.hpp"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 namespace delfront {
 
@@ -28,13 +30,23 @@ namespace {
 
 /// Fills a to d and is_forward from the vertices in their order around the facet.
 void set_vertices(HalfFacet& half, const std::uint32_t* v, int n) {
+  if (n == 3) {  // nearly every facet of a large grid: without the divisions
+    const bool first = v[0] < v[1] && v[0] < v[2], second = !first && v[1] < v[2];
+    const std::uint32_t next = first ? v[1] : second ? v[2] : v[0], previous = first ? v[2] : second ? v[0] : v[1];
+    half.a = first ? v[0] : second ? v[1] : v[2];
+    half.b = std::min(next, previous);
+    half.c = std::max(next, previous);
+    half.d = VertexId::kNone;
+    half.is_forward = next < previous;
+    return;
+  }
   int low = 0;
   for (int i = 1; i < n; ++i)
     if (v[i] < v[low]) low = i;
   const std::uint32_t next = v[(low + 1) % n], previous = v[(low + n - 1) % n];
   half.a = v[low];
   half.b = std::min(next, previous);
-  half.c = n == 2 ? VertexId::kNone : n == 3 ? std::max(next, previous) : v[(low + 2) % n];
+  half.c = n == 2 ? VertexId::kNone : v[(low + 2) % n];
   half.d = n == 4 ? std::max(next, previous) : VertexId::kNone;
   half.is_forward = n == 2 ? low == 0 : next < previous;
 }
@@ -87,6 +99,18 @@ bool comes_before(const HalfFacet& p, const HalfFacet& q) {
   return p.local_facet < q.local_facet;
 }
 
+/// By comes_before. A bucket is short, and its sides stand in the order of the cells already.
+void sort_bucket(std::span<HalfFacet> bucket) {
+  constexpr std::size_t kShort = 64;
+  if (bucket.size() > kShort) return std::sort(bucket.begin(), bucket.end(), comes_before);
+  for (std::size_t i = 1; i < bucket.size(); ++i) {
+    const HalfFacet half = bucket[i];
+    std::size_t at = i;
+    for (; at > 0 && comes_before(half, bucket[at - 1]); --at) bucket[at] = bucket[at - 1];
+    bucket[at] = half;
+  }
+}
+
 void sums_to_offsets(std::vector<std::size_t>& counts) {
   std::size_t sum = 0;
   for (std::size_t& count : counts) sum += std::exchange(count, sum);
@@ -106,8 +130,7 @@ std::vector<HalfFacet> build_facet_table(const Mesh& mesh, const CellRange& cell
   for_each([&](const HalfFacet& half) { table[next[half.a]++] = half; });
   // next[v] is now the end of the bucket of v
   for (std::size_t v = 0, first = 0; v < mesh.points.size(); first = next[v++])
-    std::sort(table.begin() + static_cast<std::ptrdiff_t>(first), table.begin() + static_cast<std::ptrdiff_t>(next[v]),
-              comes_before);
+    sort_bucket(std::span(table).subspan(first, next[v] - first));
   return table;
 }
 
@@ -131,13 +154,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_edges(const Mesh& mesh
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   edges.reserve(other.size() / 4);
   std::size_t first = 0;
+  std::vector<std::uint32_t> seen_from(mesh.points.size(), VertexId::kNone);
   for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
-    const auto begin = other.begin() + static_cast<std::ptrdiff_t>(first),
-               end = other.begin() + static_cast<std::ptrdiff_t>(next[v]);
-    std::sort(begin, end);
-    for (auto it = begin; it != end; ++it)
-      if (it == begin || *it != *(it - 1)) edges.emplace_back(v, *it);
-    first = next[v];
+    const std::size_t start = edges.size();
+    for (; first < next[v]; ++first)
+      if (std::exchange(seen_from[other[first]], v) != v) edges.emplace_back(v, other[first]);
+    std::sort(edges.begin() + static_cast<std::ptrdiff_t>(start), edges.end());
   }
   return edges;
 }

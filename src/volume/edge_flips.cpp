@@ -8,10 +8,10 @@
 namespace delfront {
 
 namespace {
-constexpr int kMaxSwitches = 200;  ///< for one edge
+constexpr std::size_t kMaxSwitches = 200;  ///< for one edge, beyond one for each obstacle at first
 constexpr int kMaxSideways = 30;
-constexpr std::size_t kMaxRing = 40;       ///< tets around an edge that is switched
-constexpr std::size_t kMaxVisited = 1000;  ///< tets looked at beyond the star of one end
+constexpr std::size_t kMaxRing = 40;        ///< tets around an edge that is switched
+constexpr std::size_t kMaxVisited = 20000;  ///< tets looked at beyond the star of one end
 }  // namespace
 
 RequiredEdges::RequiredEdges(const Segments& segments) {
@@ -25,8 +25,10 @@ RequiredEdges::RequiredEdges(const Segments& segments) {
 
 bool EdgeFlips::recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat) {
   sideways_ = kMaxSideways;
-  for (int k = 0; k < kMaxSwitches; ++k) {
+  std::size_t most = kMaxSwitches;
+  for (std::size_t k = 0; k < most; ++k) {
     const Way way = find_obstacles(a, b);
+    if (k == 0) most += obstacles_.size();
     if (way == Way::adjacent) return true;
     if (way == Way::blocked) return false;
     if (!improve(a, b) && !switch_diagonal(a, b, flat)) return false;

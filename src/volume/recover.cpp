@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "delaunay/delaunay.hpp"
@@ -23,18 +24,21 @@ namespace {
 constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
 constexpr int kMaxRestarts = 80;
 
-TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
-  TetComplex complex;
+/// The mean length of the edges at each of the model's vertices.
+void set_model_sizes(TetComplex& complex, const Model& model, const Segments& segments) {
   const std::size_t n = model.points.size();
   std::vector<double> sum(n, 0), count(n, 0);
   for (const auto& [a, b] : segments.ends) {
     const double l = distance(model.points[VertexId(a)], model.points[VertexId(b)]);
     for (const VertexIndex v : {a, b}) sum[v] += l, count[v] += 1;
   }
-  for (std::size_t v = 0; v < n; ++v) {
-    complex.add_vertex(model.points[VertexId(v)], count[v] > 0 ? sum[v] / count[v] : 0);
-    complex.on_boundary[v] = 1;
-  }
+  for (std::size_t v = 0; v < n; ++v) complex.vertex[v].h = count[v] > 0 ? sum[v] / count[v] : 0;
+}
+
+TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
+  TetComplex complex;
+  for (const Point p : model.points) complex.on_boundary[complex.add_vertex(p, 0)] = 1;
+  set_model_sizes(complex, model, segments);
   const Box box = model.bounding_box();  // a brick keeps the hull, and its ghosts, away from the model
   const double away = std::exp2(std::ceil(std::log2(box.diagonal())));
   for (int corner = 0; corner < 8; ++corner) {
@@ -78,14 +82,25 @@ class FlatParts {
     for (const auto& c : model.triangles) corners_.push_back({c[0].value, c[1].value, c[2].value});
   }
 
-  /// @param[out] is_flat  by vertex: in the part of one of the edge's triangles; Steiner points on its edges too
-  void mark(std::uint32_t edge, std::vector<bool>& is_flat) const {
-    is_flat.assign(segments_.first_steiner + segments_.steiner_edge.size(), false);
-    for (const std::uint32_t t : members_[part_[first_[edge]]])
+  /// @return by vertex: in the part of one of the edge's triangles; Steiner points on its edges too
+  const std::vector<bool>& mark(std::uint32_t edge) {
+    const std::uint32_t part = part_[first_[edge]];
+    if (part == marked_part_) return is_flat_;
+    is_flat_.resize(segments_.first_steiner + segments_.steiner_edge.size(), false);
+    for (const VertexIndex v : marked_) is_flat_[v] = false;  // not all of them: that would be quadratic
+    marked_.clear();
+    marked_part_ = part;
+    auto add = [&](VertexIndex v) {
+      if (is_flat_[v]) return;
+      is_flat_[v] = true;
+      marked_.push_back(v);
+    };
+    for (const std::uint32_t t : members_[part])
       for (std::size_t k = 0; k < 3; ++k) {
-        is_flat[corners_[t][k]] = true;
-        for (const auto& s : segments_.chain[segments_.of_triangle[t][k]]) is_flat[s.vertex] = true;
+        add(corners_[t][k]);
+        for (const auto& s : segments_.chain[segments_.of_triangle[t][k]]) add(s.vertex);
       }
+    return is_flat_;
   }
 
  private:
@@ -106,6 +121,9 @@ class FlatParts {
   std::vector<std::uint32_t> part_, first_;
   std::vector<std::vector<std::uint32_t>> members_;
   std::vector<std::array<VertexIndex, 3>> corners_;
+  std::uint32_t marked_part_ = kNoIndex;  ///< which is_flat_ is of
+  std::vector<VertexIndex> marked_;
+  std::vector<bool> is_flat_;
 };
 
 /// Switches what lies in the way of missing edges; plans a split of those that stay missing.
@@ -116,11 +134,9 @@ bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments
   if (segments.steiner_edge.empty()) report.missing_edges = missing.size();
   EdgeFlips flips(complex, required);
   std::vector<Piece> hard;
-  const FlatParts flat(model, segments);
-  std::vector<bool> is_flat;
+  FlatParts flat(model, segments);
   for (const Piece& piece : missing) {
-    flat.mark(piece.edge, is_flat);
-    if (!flips.recover(piece.low, piece.high, is_flat)) hard.push_back(piece);
+    if (!flips.recover(piece.low, piece.high, flat.mark(piece.edge))) hard.push_back(piece);
     context.check_limits();
   }
   for (const Piece& piece : hard) plan_split(model, segments, piece);
@@ -166,15 +182,53 @@ std::vector<SplitTriangle> find_split_triangles(const Segments& segments) {
   return split;
 }
 
-}  // namespace
+/// Powers of two that make the longest sides of a thin model's box alike; {1, 1, 1} where it is not thin.
+std::array<double, 3> stretch_of(const Box& box) {
+  constexpr double kThin = 16;
+  std::array<double, 3> factor{1, 1, 1};
+  const Point side = box.high - box.low;
+  if (box.longest_side() < kThin * std::min({side.x, side.y, side.z})) return factor;
+  for (int axis = 0; axis < 3; ++axis) factor[axis] = std::exp2(std::floor(std::log2(box.longest_side() / side[axis])));
+  return factor;
+}
 
-BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
-                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context) {
-  const StageTimer timer(context, "recover");
-  Segments segments = build_segments(model);
+Model stretched(Model model, const std::array<double, 3>& factor) {
+  for (Point& p : model.points)
+    for (int axis = 0; axis < 3; ++axis) p[axis] *= factor[axis];
+  return model;
+}
+
+/// Puts the vertices where they are without the stretch: exactly, since the factors are powers of two.
+void undo_stretch(TetComplex& complex, const Model& model, const Segments& segments,
+                  const std::array<double, 3>& factor) {
+  for (TetVertex& v : complex.vertex) {
+    v.x /= factor[0];
+    v.y /= factor[1];
+    v.z /= factor[2];
+  }
+  set_model_sizes(complex, model, segments);
+  for (std::uint32_t e = 0; e < segments.chain.size(); ++e)
+    for (const auto& [t, v] : segments.chain[e]) {
+      const auto& [a, b] = segments.ends[e];
+      complex.segment_points.at(v) = ExactPoint::on_segment(model.points[VertexId(a)], model.points[VertexId(b)], t);
+      complex.vertex[v].h = (1 - t) * complex.vertex[a].h + t * complex.vertex[b].h;
+    }
+}
+
+/// All of recovery, with coordinates stretched by `factor` as long as edges and facets are recovered.
+BoundaryGrid try_boundary(const Model& model, const std::array<double, 3>& factor, std::size_t most_steiner,
+                          const DomainOptions& domain, const std::vector<bool>& is_far_field, RecoveryReport& report,
+                          Context& context) {
+  const bool is_plain = factor == std::array<double, 3>{1, 1, 1};
+  const Model stretched_model = is_plain ? Model() : stretched(model, factor);
+  const Model& recovered = is_plain ? model : stretched_model;
+  Segments segments = build_segments(recovered);
+  segments.most_steiner = std::min(segments.most_steiner, most_steiner);
   std::vector<Subface> subfaces;
   BoundaryGrid grid;
-  grid.complex = recover_boundary(model, segments, subfaces, report, context);
+  report = {};
+  grid.complex = recover_boundary(recovered, segments, subfaces, report, context);
+  if (!is_plain) undo_stretch(grid.complex, model, segments, factor);
   const auto facts = colour_regions(grid.complex, subfaces, model, is_far_field, context);
   const std::vector<bool> keep = choose_regions(grid.complex, facts, domain);
   grid.num_regions = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), true));
@@ -182,6 +236,27 @@ BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& do
   unsplit_boundary(grid.complex, segments, report, context);
   if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
   return grid;
+}
+
+}  // namespace
+
+// Which tets fill a polyhedron does not depend on a stretch along an axis, but how many points its edges need to become
+// Delaunay does: by orders of magnitude where the model is thin. So a thin model that needs many is stretched.
+BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
+                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context) {
+  const StageTimer timer(context, "recover");
+  const std::array<double, 3> plain{1, 1, 1}, factor = stretch_of(model.bounding_box());
+  constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
+  if (factor == plain) return try_boundary(model, plain, kNoBound, domain, is_far_field, report, context);
+  const std::size_t few = model.triangles.size() + 100;
+  for (const auto& [how, most] : {std::pair{plain, few}, {factor, kNoBound}}) {
+    try {
+      return try_boundary(model, how, most, domain, is_far_field, report, context);
+    } catch (const MeshingError&) {
+      // the next way may do
+    }
+  }
+  return try_boundary(model, plain, kNoBound, domain, is_far_field, report, context);
 }
 
 }  // namespace delfront

@@ -7,6 +7,7 @@
 #include "volume/refine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/hilbert.hpp"
@@ -18,9 +19,9 @@ namespace {
 constexpr double kRegularRadius = 0.61237243569579452;  ///< circumradius of a regular tet of side 1: sqrt(6) / 4
 constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;  ///< of the wanted size, between points
-constexpr double kEnough = 1e-3;       ///< share of proposals that still succeed, below which a round was the last
 constexpr std::size_t kPointsPerCancelCheck = 4096;
-constexpr std::size_t kRecent = 16;
+constexpr std::uint64_t kMaxSteps = 256;  ///< to a proposal's tet, 5 on average: beyond, a walk among slivers wanders
+constexpr std::size_t kRecent = 16;       ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
 constexpr std::size_t kWorthRadixSort = 4096;
 
@@ -29,7 +30,7 @@ struct Proposal {
   TetIndex tet;
   VertexIndex near;  ///< a vertex near it
   std::uint32_t region;
-  std::uint8_t way;  ///< which of the tet's proposals it is, as a State bit
+  std::uint16_t way;  ///< which of the tet's proposals it is, as a State bit
 };
 
 class Refinement {
@@ -42,15 +43,19 @@ class Refinement {
     recent_.fill({kFar, kFar, kFar});
     state_.assign(c_.num_slots(), queued);
     for (TetIndex t = 0; t < c_.num_slots(); ++t) fresh_.push_back(t);
-    for (bool frontal = true;;) {
+    for (Placement placement = Placement::over_face;;) {
       classify_fresh();
-      propose(frontal);
+      propose(placement);
       ask_sizes();
       const std::size_t inserted = insert();
       ++report_.rounds;
-      if (static_cast<double>(inserted) > kEnough * static_cast<double>(proposals_.size())) continue;
-      if (!frontal) break;
-      frontal = false;  // what the front could not reach: circumcentres, until those end too
+      if (inserted > 0) {
+        placement = Placement::over_face;  // the front goes on from there
+        continue;
+      }
+      if (placement == Placement::centroid) break;
+      // What the front could not reach: circumcentres; where those lie behind the boundary: centroids.
+      placement = placement == Placement::over_face ? Placement::circumcentre : Placement::centroid;
       for (TetIndex t = 0; t < c_.num_slots(); ++t) enqueue(t);
     }
     return report_;
@@ -58,19 +63,27 @@ class Refinement {
 
  private:
   /// What is known of a tet; all of it goes when its slot is used again.
-  enum State : std::uint8_t {
+  enum State : std::uint16_t {
     refused_0 = 1,  ///< bits 0-3: the point over face f was refused; that would happen again
-    refused_centre = 1 << 4,
-    accepted = 1 << 5,
-    large = 1 << 6,  ///< not accepted
-    queued = 1 << 7  ///< in fresh_, or in candidates_ while that is put together
+    refused_circumcentre = 1 << 4,
+    refused_centroid = 1 << 5,
+    accepted = 1 << 6,
+    large = 1 << 7,  ///< not accepted
+    queued = 1 << 8  ///< in fresh_, or in candidates_ while that is put together
   };
+
+  enum class Placement : std::uint8_t { over_face, circumcentre, centroid };
 
   bool is_live(TetIndex t) const { return !c_.is_dead(t) && !c_.is_ghost(t); }
 
   double mean_size(TetIndex t) const {
     const std::uint32_t* n = &c_.node[4 * t];
     return (c_.vertex[n[0]].h + c_.vertex[n[1]].h + c_.vertex[n[2]].h + c_.vertex[n[3]].h) / 4;
+  }
+
+  Point centroid(TetIndex t) const {
+    const std::uint32_t* n = &c_.node[4 * t];
+    return 0.25 * (c_.point(n[0]) + c_.point(n[1]) + c_.point(n[2]) + c_.point(n[3]));
   }
 
   bool is_accepted(TetIndex t) const {
@@ -87,7 +100,7 @@ class Refinement {
   /// Who may propose now and could not before: fresh tets, and tets that the front has come to.
   void classify_fresh() {
     for (const TetIndex t : fresh_) {
-      state_[t] &= static_cast<std::uint8_t>(~queued);
+      state_[t] &= static_cast<std::uint16_t>(~queued);
       if (is_live(t) && !(state_[t] & (accepted | large))) state_[t] |= is_accepted(t) ? accepted : large;
     }
     candidates_.clear();
@@ -102,21 +115,27 @@ class Refinement {
       if (state_[t] & accepted)
         for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) add(c_.neigh[ref] >> 2);
     }
-    for (const TetIndex t : candidates_) state_[t] &= static_cast<std::uint8_t>(~queued);
+    for (const TetIndex t : candidates_) state_[t] &= static_cast<std::uint16_t>(~queued);
     fresh_.clear();
   }
 
-  void propose(bool frontal) {
+  void propose(Placement placement) {
     proposals_.clear();
     for (const TetIndex t : candidates_) {
       const Circumsphere& s = kernel_.sphere(t);
       if (!std::isfinite(s.squared_radius)) continue;
-      if (frontal)
+      if (placement == Placement::over_face)
         propose_over_face(t, s);
-      else if (!(state_[t] & refused_centre))
-        proposals_.push_back({s.centre, t, c_.node[4 * t], c_.region[t], refused_centre});
+      else if (placement == Placement::circumcentre)
+        propose_at(s.centre, t, refused_circumcentre);
+      else
+        propose_at(centroid(t), t, refused_centroid);
     }
     report_.candidates += proposals_.size();
+  }
+
+  void propose_at(Point at, TetIndex t, std::uint16_t way) {
+    if (!(state_[t] & way)) proposals_.push_back({at, t, c_.node[4 * t], c_.region[t], way});
   }
 
   /// Over the front face whose point would lie nearest to it.
@@ -126,6 +145,7 @@ class Refinement {
     Proposal proposal{{}, t, kNoIndex, c_.region[t], 0};
     for (unsigned f = 0; f < 4; ++f) {
       const FaceRef ref = 4 * t + f;
+      if (state_[t] & (refused_0 << f)) continue;
       if (!c_.is_constrained(ref) && !(state_[c_.neigh[ref] >> 2] & accepted)) continue;
       const auto n = c_.face_nodes(ref);
       const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
@@ -140,12 +160,12 @@ class Refinement {
       const double wanted = std::sqrt(std::max(h * h - r2, 0.25 * h * h));
       if (up <= 0 || (found && wanted >= best)) continue;
       proposal.at = foot + std::min(wanted, up) * normal;
-      proposal.way = static_cast<std::uint8_t>(refused_0 << f);
+      proposal.way = static_cast<std::uint16_t>(refused_0 << f);
       proposal.near = n[0];
       best = wanted;
       found = true;
     }
-    if (found && !(state_[t] & proposal.way)) proposals_.push_back(proposal);
+    if (found) proposals_.push_back(proposal);
   }
 
   /// Along the curve, all at once.
@@ -174,10 +194,7 @@ class Refinement {
         context_.check_cells(c_.num_live());
       }
       const Proposal& p = proposals_[order_[k].second];
-      if (!is_unchanged(p.tet) && is_near_recent(p.at, kMinDistance * sizes_[k])) {
-        /*RECENT*/
-        continue;
-      }
+      if (!is_unchanged(p.tet) && is_near_recent(p.at, kMinDistance * sizes_[k])) continue;
       if (insert_one(p, sizes_[k]))
         ++inserted;
       else if (is_unchanged(p.tet))
@@ -199,10 +216,11 @@ class Refinement {
   bool insert_one(const Proposal& p, double h) {
     const VertexIndex v = c_.add_vertex(p.at, h);
     const bool is_there = is_unchanged(p.tet);
-    TetIndex holder = kernel_.locate(v, is_there ? p.tet : c_.vertex_tet[p.near]);
-    if (c_.is_ghost(holder) && !is_there) holder = kernel_.locate(v, p.tet);  // the first walk may have left a hollow
+    TetIndex holder = kernel_.locate(v, is_there ? p.tet : c_.vertex_tet[p.near], kMaxSteps);
+    if (holder != kNoIndex && c_.is_ghost(holder) && !is_there)  // the walk may have left a hollow: from elsewhere
+      holder = kernel_.locate(v, p.tet, kMaxSteps);
     bool done = false;
-    if (!c_.is_ghost(holder) && c_.region[holder] == p.region)
+    if (holder != kNoIndex && !c_.is_ghost(holder) && c_.region[holder] == p.region)
       done = kernel_.insert_into(holder, v, {.min_distance = kMinDistance * h, .constrained = true}) ==
              DelaunayKernel::Insert::done;
     if (!done) {
@@ -223,8 +241,8 @@ class Refinement {
   Context& context_;
   DelaunayKernel kernel_;
   RefineReport report_;
-  std::vector<std::uint8_t> state_;  ///< by tet, bits of State
-  std::vector<TetIndex> fresh_;      ///< made since the last round
+  std::vector<std::uint16_t> state_;  ///< by tet, bits of State
+  std::vector<TetIndex> fresh_;       ///< made since the last round
   std::vector<TetIndex> candidates_;
   std::vector<Proposal> proposals_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;

@@ -137,7 +137,7 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
   for (std::size_t i = 0; i < facts.size(); ++i)
     if (facts[i].is_undecided)
       context.log(
-          LogLevel::info,
+          LogLevel::warning,
           fmt::format("region {}: the orientation of its faces does not tell whether it is a hole; taken as a region",
                       i + 1));
   return facts;

@@ -10,7 +10,8 @@ namespace delfront {
 
 namespace {
 constexpr std::size_t kBrickCorners = 8;
-}
+constexpr std::size_t kMaxPointsPerEdge = 40;  ///< on average; a model that needs more has parts too close to hold
+}  // namespace
 
 void Segments::vertices_along(std::uint32_t edge, bool backwards, std::vector<VertexIndex>& out) const {
   out.clear();
@@ -70,6 +71,7 @@ Segments build_segments(const Model& model) {
     s.of_triangle[sides[i].triangle][sides[i].corner] = static_cast<std::uint32_t>(s.ends.size() - 1);
   }
   s.chain.resize(s.ends.size());
+  s.most_steiner = kMaxPointsPerEdge * s.ends.size() + 10000;
   s.vertex_offset.assign(s.num_model_vertices + 2, 0);
   for (const auto& e : s.ends)
     for (const VertexIndex v : e) ++s.vertex_offset[v + 2];
@@ -82,8 +84,6 @@ Segments build_segments(const Model& model) {
 }
 
 namespace {
-
-constexpr std::size_t kMaxPointsPerEdge = 40;  ///< on average; a model that needs more has parts too close to hold
 
 /// The power of two nearest to a length, in ratio.
 double shell(double length) { return std::exp2(std::round(std::log2(length))); }
@@ -137,6 +137,10 @@ VertexIndex extend_chain(const Model& model, Segments& segments, std::uint32_t e
   if (!(t > low && t < high) || high - low < 1e-12) {
     const VertexIndex near = segments.ends[edge][0];
     fail_at(model.points[VertexId(near)], near, "an edge cannot be split again");
+  }
+  if (segments.steiner_edge.size() >= segments.most_steiner) {
+    const VertexIndex near = segments.ends[edge][0];
+    fail_at(model.points[VertexId(near)], near, "too many points on edges");
   }
   const auto v = static_cast<VertexIndex>(segments.first_steiner + segments.steiner_edge.size());
   segments.steiner_edge.push_back(edge);
@@ -232,7 +236,6 @@ void recover_segments(TetComplex& complex, DelaunayKernel& kernel, const Model& 
                       Context& context) {
   std::vector<VertexIndex> touched;
   std::vector<TetIndex> scratch;
-  const std::size_t most = kMaxPointsPerEdge * segments.ends.size() + 10000;
   for (bool is_first_pass = true;; is_first_pass = false) {
     const std::vector<Piece> missing =
         find_missing_pieces(complex, segments, is_first_pass ? nullptr : &touched, context);
@@ -245,7 +248,6 @@ void recover_segments(TetComplex& complex, DelaunayKernel& kernel, const Model& 
       for (const TetIndex t : kernel.made())
         for (unsigned k = 0; k < 4; ++k)
           if (const VertexIndex w = complex.node[4 * t + k]; w != kGhost) touched.push_back(w);
-      if (segments.steiner_edge.size() > most) fail_at(complex.point(piece.low), piece.low, "too many points on edges");
     }
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());

@@ -27,6 +27,7 @@ struct Segments {
   std::vector<std::uint32_t> steiner_edge;                ///< edge of Steiner vertex first_steiner + i
   std::size_t num_model_vertices = 0;
   std::size_t first_steiner = 0;  ///< between the two: the corners of the brick around the model
+  std::size_t most_steiner = 0;   ///< more of them, and recovery fails
 
   /// @brief The vertices from one end to the other, Steiner points included.
   void vertices_along(std::uint32_t edge, bool backwards, std::vector<VertexIndex>& out) const;

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_map>
+
+#include "base/hilbert.hpp"
 
 namespace delfront {
 
@@ -73,20 +76,52 @@ class Conversion {
     patch_group_.resize(model_.patches.size());
   }
 
+  /// The model's points first, as they came; the others along the Hilbert curve, for the caches of all who read it.
   void add_points() {
-    new_id_.resize(c_.num_vertices());
-    for (VertexIndex v = 0; v < c_.num_vertices(); ++v) {
+    const auto num_given = static_cast<VertexIndex>(std::min(model_.points.size(), c_.num_vertices()));
+    std::vector<VertexIndex> added;
+    std::vector<Point> places;
+    for (VertexIndex v = num_given; v < c_.num_vertices(); ++v) {
       if (c_.vertex_tet[v] == kNoIndex) continue;
+      added.push_back(v);
+      places.push_back(c_.point(v));
+    }
+    new_id_.resize(c_.num_vertices());
+    mesh_.points.reserve(num_given + added.size());
+    auto add = [&](VertexIndex v) {
       new_id_[v] = mesh_.points.next_id();
       mesh_.points.push_back(c_.point(v));
-    }
+    };
+    for (VertexIndex v = 0; v < num_given; ++v)
+      if (c_.vertex_tet[v] != kNoIndex) add(v);
+    for (const std::uint32_t i : hilbert_order(places)) add(added[i]);
     mesh_.vertex_entity.resize(mesh_.points.size());
+  }
+
+  /// The live tets by their last vertex, which stands on the curve where there is one inside: a counting sort.
+  std::vector<TetIndex> order_tets() const {
+    std::vector<std::uint32_t> next(mesh_.points.size() + 1, 0);
+    auto last_vertex = [&](TetIndex t) {
+      const std::uint32_t* n = &c_.node[4 * t];
+      return std::max({new_id_[n[0]].value, new_id_[n[1]].value, new_id_[n[2]].value, new_id_[n[3]].value});
+    };
+    auto for_each_tet = [&](auto&& visit) {
+      for (TetIndex t = 0; t < c_.num_slots(); ++t)
+        if (!c_.is_dead(t) && !c_.is_ghost(t)) visit(t);
+    };
+    for_each_tet([&](TetIndex t) { ++next[last_vertex(t) + 1]; });
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<TetIndex> order(next.back());
+    for_each_tet([&](TetIndex t) { order[next[last_vertex(t)]++] = t; });
+    return order;
   }
 
   void add_tets() {
     CellBlock& tets = mesh_.block(CellType::tetrahedron);
-    for (TetIndex t = 0; t < c_.num_slots(); ++t) {
-      if (c_.is_dead(t) || c_.is_ghost(t)) continue;
+    const std::vector<TetIndex> order = order_tets();
+    tets.vertices.reserve(4 * order.size());
+    tets.group.reserve(order.size());
+    for (const TetIndex t : order) {
       for (unsigned k = 0; k < 4; ++k) {
         const VertexId v = new_id_[c_.node[4 * t + k]];
         tets.vertices.push_back(v);
