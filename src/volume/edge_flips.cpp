@@ -118,6 +118,46 @@ void EdgeFlips::add_cut_faces(TetIndex t, VertexIndex a, VertexIndex b, bool& th
   }
 }
 
+std::size_t EdgeFlips::restore_delaunay(Context& context) {
+  std::vector<FaceRef> stack;
+  for (FaceRef ref = 0; ref < 4 * c_.num_slots(); ++ref)
+    if (!c_.is_dead(ref >> 2) && ref < c_.neigh[ref]) stack.push_back(ref);
+  const std::size_t most = 4 * c_.num_slots();
+  std::size_t switches = 0;
+  while (!stack.empty() && switches < most) {
+    const FaceRef ref = stack.back();
+    stack.pop_back();
+    if (c_.is_dead(ref >> 2) || !make_locally_delaunay(ref)) continue;
+    if (++switches % 1024 == 0) context.check_limits();
+    for (const TetIndex t : new_tets_)
+      for (unsigned f = 0; f < 4; ++f) stack.push_back(4 * t + f);
+  }
+  return switches;
+}
+
+bool EdgeFlips::make_locally_delaunay(FaceRef ref) {
+  const TetIndex t = ref >> 2, other = c_.neigh[ref] >> 2;
+  if (c_.is_constrained(ref) || c_.is_ghost(t) || c_.is_ghost(other)) return false;
+  const VertexIndex top = c_.node[ref], bottom = c_.node[c_.neigh[ref]];
+  const std::uint32_t* node = &c_.node[4 * t];
+  if (insphere_perturbed(c_.point(node[0]), c_.point(node[1]), c_.point(node[2]), c_.point(node[3]),
+                         c_.point(bottom)) <= 0)
+    return false;
+  const auto n = c_.face_nodes(ref);
+  int reflex = -1, sides = 0, sign = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const int s = c_.orient(bottom, top, n[i], n[(i + 1) % 3]);
+    if (s <= 0) reflex = k, sign = s, ++sides;
+  }
+  if (sides == 0) return switch_face({ref, {n[0], n[1], n[2]}, false});
+  if (sides > 1) return false;
+  const VertexIndex p = n[static_cast<std::size_t>(reflex)], q = n[static_cast<std::size_t>((reflex + 1) % 3)];
+  if (!collect_ring(t, p, q)) return false;
+  if (ring_.size() == 3) return switch_edge(t, p, q, kNoIndex, kNoIndex);
+  return sign == 0 && ring_.size() == 4 && switch_edge(t, p, q, top, bottom);
+}
+
 bool EdgeFlips::improve(VertexIndex a, VertexIndex b) {
   tried_ = obstacles_;
   const std::size_t before = tried_.size();

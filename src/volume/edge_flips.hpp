@@ -5,6 +5,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "delfront/context.hpp"
 #include "tetra/tet_complex.hpp"
 #include "volume/segments.hpp"
 
@@ -37,6 +38,14 @@ class EdgeFlips {
   /// @param flat  one a vertex: whether it lies in the flat part of the surface that (a, b) runs through
   bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
 
+  /// @brief Switch faces that are not locally Delaunay (2-3, 3-2, 4-4 where flat), until none is left that can be.
+  ///
+  /// Recovery leaves flat tets with huge spheres behind; insertion by cavity never gets rid of those.
+  /// @return switches made
+  /// @pre all points are explicit
+  /// @par Source  Lawson (1977); in space: Joe (1989)
+  std::size_t restore_delaunay(Context& context);
+
  private:
   /// A face that the segment cuts, or an edge that it cuts exactly (`is_edge`: between node[0] and node[1]).
   struct Obstacle {
@@ -48,6 +57,7 @@ class EdgeFlips {
 
   Way find_obstacles(VertexIndex a, VertexIndex b);
   void add_cut_faces(TetIndex t, VertexIndex a, VertexIndex b, bool& through_vertex);
+  bool make_locally_delaunay(FaceRef ref);
   bool improve(VertexIndex a, VertexIndex b);
   bool switch_diagonal(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
   bool fill_half_from_point(VertexIndex p, VertexIndex q, std::size_t i, std::size_t j);

@@ -234,6 +234,8 @@ BoundaryGrid try_boundary(const Model& model, const std::array<double, 3>& facto
   grid.num_regions = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), true));
   strip_outside(grid.complex, keep);
   unsplit_boundary(grid.complex, segments, report, context);
+  const RequiredEdges none{Segments{}};
+  EdgeFlips(grid.complex, none).restore_delaunay(context);
   if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
   return grid;
 }
