@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "commands.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
@@ -36,6 +38,9 @@ class ConvertCommand : public Command {
     Terminal terminal = make_terminal();
     Context context;
     prepare(context, terminal);
+    std::error_code ignored;
+    if (std::filesystem::equivalent(in_, out_, ignored))
+      throw UsageError(fmt::format("{} is the input and would be overwritten; give OUT another name", out_));
     check_writable(out_);
     const Mesh mesh = read_mesh(in_, context, from_);
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};

@@ -20,6 +20,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// What is written must not stand where the file to look at stands.
+void check_output(const std::string& path, const std::string& input) {
+  if (path.empty() || path == "-") return;
+  check_writable(path);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored) && std::filesystem::equivalent(path, input, ignored))
+    throw UsageError(path + " is the input and would be overwritten; give the output another name");
+}
+
 const char* yes_no(bool value) { return value ? "yes" : "no"; }
 
 /// What both commands do first: a file becomes a surface with its report, or a grid with its findings.
@@ -112,8 +121,8 @@ class CheckCommand : public Command {
     Terminal terminal = make_terminal();
     Context context;
     prepare(context, terminal);
-    for (const std::string& path : {defects_, json_})
-      if (!path.empty() && path != "-") check_writable(path);
+    for (const std::string& path : {defects_, json_}) check_output(path, file_);
+    if (!defects_.empty() && defects_ == json_) throw UsageError("--defects and --json name the same file");
     const Inspected it = inspect(file_, format_, context);
     const bool is_valid_grid = it.is_grid && it.is_usable();
     const std::vector<std::string> failed =
@@ -175,6 +184,7 @@ class InfoCommand : public Command {
     Terminal terminal = make_terminal();
     Context context;
     prepare(context, terminal);
+    check_output(json_, file_);
     const Inspected it = inspect(file_, format_, context);
     terminal.clear_bar();
     if (terminal.verbosity() >= 0 && json_ != "-") print(it);

@@ -21,7 +21,7 @@ const char* const kDescription =
     "  delfront info  body.stl                     look first: size, patches, closed or not\n"
     "  delfront check body.stl                     every defect with its place\n"
     "  delfront mesh  body.stl -o body.vtu         grid the inside\n"
-    "  delfront mesh  car.stl  -o case/ --farfield box:10c --hmax 20%   grid the outside, for OpenFOAM\n"
+    "  delfront mesh  car.stl  -o case/ --farfield box:10c   grid the outside, for OpenFOAM\n"
     "  delfront check body.vtu                     quality of a grid, with its worst cells\n"
     "  delfront convert body.vtu body.su2          another file format";
 
@@ -35,13 +35,18 @@ std::string footer() {
 
 /// What CLI11 did not know: an unknown flag or command, said with the nearest right name.
 [[noreturn]] void fail_unknown(const CLI::App& app, const std::string& word) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, positionals;
   const bool is_flag = word.size() > 1 && word[0] == '-';
   if (is_flag)
     for (const CLI::Option* option : app.get_options())
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   else
     for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const CLI::Option* option : app.get_options())
+    if (option->get_positional()) positionals.push_back("one " + option->get_name(true));
+  if (!is_flag && names.empty())  // behind a command: one file too many
+    throw UsageError(fmt::format("'{}' is one argument too many: {} only; see delfront {} --help", word,
+                                 fmt::join(positionals, ", "), app.get_name()));
   const std::string flag = word.substr(0, word.find('='));
   const std::string planned = planned_note(flag);
   const std::string what = is_flag ? "option" : "command";

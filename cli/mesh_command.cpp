@@ -45,6 +45,7 @@ class MeshCommand : public Command {
         ->type_name("KEY=VALUE")
         ->expected(1)
         ->take_all()
+        ->allow_extra_args(false)
         ->group("Job");
     app->add_flag("--print-config", print_config_, "print the whole effective configuration as TOML and stop")
         ->group("Job");
@@ -74,6 +75,7 @@ class MeshCommand : public Command {
         ->type_name(row.metavar)
         ->expected(1)
         ->take_all()
+        ->allow_extra_args(false)
         ->group(group_of(row.key));
   }
 
@@ -83,6 +85,7 @@ class MeshCommand : public Command {
           ->type_name(shorthand.metavar)
           ->expected(1)
           ->take_all()
+          ->allow_extra_args(false)
           ->group("Domain");
     else
       app->add_flag(shorthand.flags, shorthand_flags_[shorthand.flags], shorthand.help)
@@ -112,6 +115,9 @@ class MeshCommand : public Command {
       has_job = true;
       read_job_file(file, options);
     }
+    if (!surfaces.empty() && !options.input.files.empty())
+      throw UsageError(fmt::format("'{}': the job file already names its input, {}; give one or the other", surfaces[0],
+                                   fmt::join(options.input.files, ", ")));
     if (!surfaces.empty()) options.input.files = surfaces;
     for (const OptionRow& row : option_table()) apply_flag(row, options);
     for (const Shorthand& shorthand : shorthand_table()) apply_shorthand(shorthand, options);

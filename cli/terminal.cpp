@@ -39,7 +39,8 @@ std::string counts(const Progress& p, double seconds_in_stage) {
   if (seconds_in_stage < 0.5 || p.done == 0) return text;
   const double rate = done / seconds_in_stage;
   text += fmt::format(", {}/s", rate < 10 ? fmt::format("{:.1f}", rate) : short_count(rate));
-  if (p.total > p.done) text += fmt::format(", {} left", short_time((total - done) / rate));
+  const bool has_sweeps = p.stage == "improve";  // its count restarts with each, and how many come is not known
+  if (p.total > p.done && !has_sweeps) text += fmt::format(", {} left", short_time((total - done) / rate));
   return text;
 }
 

@@ -13,8 +13,8 @@ namespace delfront {
 /// @brief Read a job file into `options`: TOML, or JSON with the same tree where the name ends in .json.
 ///
 /// Keys that the file does not name keep their values. Paths in it are relative to the folder the file lies in.
-/// @throws InputError  the file cannot be read
-/// @throws UsageError  not TOML / JSON, unknown key, wrong type or value: the key, its line, what is allowed, and the
+/// @throws UsageError  the file cannot be read; not TOML / JSON, unknown key, wrong type or value: the key, its line,
+/// what is allowed, and the
 ///                     nearest right name
 void read_job_file(const std::string& path, Options& options);
 

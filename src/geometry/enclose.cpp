@@ -212,6 +212,12 @@ void append_sphere(Model& model, Point centre, double radius, double h, PatchId 
   }
 }
 
+double default_far_field_side(const EncloseOptions& options) {
+  if (options.shape == "sphere" || !options.corners) return kDefaultFraction * options.size.value;
+  const auto& c = *options.corners;
+  return kDefaultFraction * 0.5 * std::min({c[3] - c[0], c[4] - c[1], c[5] - c[2]});
+}
+
 PatchId add_far_field(Model& model, const EncloseOptions& options, const LengthScale& scale, Context& context) {
   if (options.shape == "none") return {};
   if (options.shape != "box" && options.shape != "sphere")
@@ -224,8 +230,9 @@ PatchId add_far_field(Model& model, const EncloseOptions& options, const LengthS
   if (has_size) require_positive(size, is_sphere ? "radius" : "half side");
   const Box box = is_sphere ? Box{} : box_from(options, centre, size);
   const Point side = box.high - box.low;
-  const double half = is_sphere ? size : 0.5 * std::min({side.x, side.y, side.z});
-  const double h = options.h ? to_model_units(*options.h, scale) : kDefaultFraction * half;
+  EncloseOptions resolved = options;
+  resolved.size = {size, ""};
+  const double h = options.h ? to_model_units(*options.h, scale) : default_far_field_side(resolved);
   require_positive(h, "side of the triangles");
   const double area = is_sphere ? 12.57 * size * size : 2 * (side.x * side.y + side.y * side.z + side.z * side.x);
   require_affordable(2 * area / h / h, h);

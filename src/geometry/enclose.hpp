@@ -19,6 +19,9 @@ namespace delfront {
 /// @throws InputError  the model is not strictly inside (the place that is farthest out is given)
 PatchId add_far_field(Model& model, const EncloseOptions& options, const LengthScale& scale, Context& context);
 
+/// @return the side of its triangles where options.h is absent, for a size in model units
+double default_far_field_side(const EncloseOptions& options);
+
 /// @brief Append a box whose sides are grids of about h, with common vertices along its edges; outward.
 void append_box(Model& model, const Box& box, double h, PatchId patch);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
@@ -135,6 +136,27 @@ void ModelBuilder::add(const NamedMesh& input) {
     throw InputError(fmt::format("{}: no faces in it; a surface of triangles or polygons is needed", input.stem));
 }
 
+/// What the exact predicates hold, and products of three lengths too (predicates.hpp).
+void check_range(const Model& model) {
+  constexpr double kLargest = 0x1p100, kSmallest = 0x1p-100;
+  for (std::size_t v = 0; v < model.points.size(); ++v) {
+    const Point p = model.points[VertexId(v)];
+    const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    if (largest > kLargest)
+      throw InputError(
+          fmt::format("a coordinate is {:g}, and nothing above {:.2g} can be handled; export the surface in "
+                      "another unit, or repair the damaged number",
+                      largest, kLargest),
+          {{p, {static_cast<std::uint32_t>(v)}}});
+  }
+  const double side = model.bounding_box().longest_side();
+  if (side > 0 && side < kSmallest)
+    throw InputError(
+        fmt::format("the surface is only {:g} long, and nothing below {:.2g} can be handled; export it in a "
+                    "smaller unit",
+                    side, kSmallest));
+}
+
 Model ModelBuilder::finish() {
   if (num_faces_ == 0) throw InputError("no faces at all: name at least one file with a surface");
   if (num_bad_ > 0) {
@@ -144,6 +166,7 @@ Model ModelBuilder::finish() {
         bad_stem_, num_bad_ == 1 ? "1 face has" : fmt::format("{} faces have", num_bad_), bad_[0].ids[0]);
     throw InputError(message, std::move(bad_));
   }
+  check_range(model_);
   if (model_.points.size() < num_points_read_)
     context_.log(LogLevel::info, fmt::format("welded {} equal points: {} are left",
                                              num_points_read_ - model_.points.size(), model_.points.size()));

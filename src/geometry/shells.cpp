@@ -50,6 +50,7 @@ void mark_outer_shells(SurfaceShells& out) {
   // The outer shell's volume is minus the sum of the others', so it is the lowest.
   std::vector<std::uint32_t> lowest(out.parent_shell.size(), kNoShell);
   for (std::uint32_t s = 0; s < out.shells.size(); ++s) {
+    if (out.shells[s].component == kNoTriangle) continue;  // of a triangle that repeats a corner
     std::uint32_t& best = lowest[out.shells[s].component];
     if (best == kNoShell || out.shells[s].volume < out.shells[best].volume) best = s;
   }
@@ -297,7 +298,7 @@ std::vector<bool> find_triangles_to_turn(const Surface& surface, const SurfaceSh
     ++votes[root][std::size_t(parity)];
   }
   for (std::uint32_t t = 0; t < n; ++t) {
-    if (!is_mixed[shells.component[t]]) continue;
+    if (!surface.has_edges[t] || !is_mixed[shells.component[t]]) continue;
     const bool front = is_outside(shells.front(t)), back = is_outside(shells.back(t));
     if (front != back) {
       turn[t] = back;

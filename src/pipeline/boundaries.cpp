@@ -36,23 +36,40 @@ static std::vector<std::string> patch_names(const Model& model) {
   return names;
 }
 
-void apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model) {
-  if (boundaries.empty()) return;
+/// Two patches of one name could not be told apart in the grid.
+static void refuse_second_far_field(const std::vector<BoundaryOptions>& boundaries,
+                                    const std::vector<std::size_t>& boundary_of, const Model& model,
+                                    PatchId far_field) {
+  const std::size_t own = boundary_of[far_field.index()];
+  const std::string name = own < boundaries.size() ? boundaries[own].name : model.patches[far_field].name;
+  for (std::size_t i = 0; i < boundary_of.size(); ++i)
+    if (PatchId(i) != far_field && boundary_of[i] < boundaries.size() && boundaries[boundary_of[i]].name == name)
+      throw UsageError(
+          fmt::format("boundaries.{}: patch '{}' of the input would get the name of the far field; give the boundary "
+                      "another name, or the far field (domain.enclose.name)",
+                      name, model.patches[PatchId(i)].name));
+}
+
+PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model, PatchId far_field) {
+  if (boundaries.empty()) return far_field;
   constexpr std::size_t kKept = static_cast<std::size_t>(-1);
   std::vector<std::size_t> boundary_of(model.patches.size(), kKept);
   for (std::size_t b = 0; b < boundaries.size(); ++b) {
     const std::string& pattern = boundaries[b].select.empty() ? boundaries[b].name : boundaries[b].select;
     bool found = false;
-    for (std::size_t i = 0; i < model.patches.size(); ++i)
-      if (matches_pattern(model.patches[PatchId(i)].name, pattern)) {
-        boundary_of[i] = b;
-        found = true;
-      }
+    for (std::size_t i = 0; i < model.patches.size(); ++i) {
+      const std::string& name = model.patches[PatchId(i)].name;
+      const bool is_far_field = PatchId(i) == far_field;
+      if (is_far_field ? name != pattern : !matches_pattern(name, pattern)) continue;
+      boundary_of[i] = b;
+      found = true;
+    }
     const std::vector<std::string> names = patch_names(model);
     if (!found)
       throw UsageError(fmt::format("boundaries.{}: no patch is called '{}'{}; the input has: {}", boundaries[b].name,
                                    pattern, did_you_mean(pattern, names), fmt::join(names, ", ")));
   }
+  if (far_field.is_valid()) refuse_second_far_field(boundaries, boundary_of, model, far_field);
   Array<PatchId, Patch> patches;
   std::vector<PatchId> patch_of_boundary(boundaries.size());
   std::vector<PatchId> new_patch(model.patches.size());
@@ -72,6 +89,7 @@ void apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& mod
   }
   for (PatchId& patch : model.patch_of_triangle) patch = new_patch[patch.index()];
   model.patches = std::move(patches);
+  return far_field.is_valid() ? new_patch[far_field.index()] : far_field;
 }
 
 Mesh surface_mesh(const Model& model) {

@@ -15,8 +15,12 @@ bool matches_pattern(const std::string& name, const std::string& pattern);
 ///
 /// Patches that one boundary selects become one patch of its name; patches that nobody selects stay. Where two
 /// boundaries select the same patch, the later one in the job file gets it.
-/// @throws UsageError  a selector that matches no patch (the names there are)
-void apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model);
+/// @param far_field  a far field made around the input, or invalid: only its exact name selects it, as a pattern such
+///                   as "*" means the patches of the input
+/// @return the far field's patch in the new list; invalid where there is none
+/// @throws UsageError  a selector that matches no patch (the names there are); patches of the input that would get the
+///                     far field's name
+PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model, PatchId far_field = {});
 
 /// @brief The model as a surface mesh: its points, its triangles in order, its patches as groups.
 Mesh surface_mesh(const Model& model);

@@ -198,7 +198,12 @@ std::string read_text_file(const std::string& path) {
 }
 
 void read_job_file(const std::string& path, Options& options) {
-  const std::string text = read_text_file(path);
+  std::string text;
+  try {
+    text = read_text_file(path);
+  } catch (const InputError& e) {  // the job file is part of the command, not the surface to grid
+    throw UsageError(e.what());
+  }
   const bool is_json = fs::path(path).extension() == ".json";
   JobValue tree = is_json ? parse_json(text, path) : parse_toml(text, path);
   if (!tree.is(JobValue::Kind::table)) throw UsageError(fmt::format("{}: expected a table of options", path));

@@ -318,7 +318,8 @@ std::vector<OptionRow> build_table() {
   add(text_row(
       "domain.enclose.name", "", "", "its patch", [](auto& o) -> auto& { return o.domain.enclose.name; }));
   add(length_row(
-      "domain.enclose.h", "--farfield-h", "side of the far field's triangles; by default from its size",
+      "domain.enclose.h", "--farfield-h",
+      "side of the far field's triangles; by default from its size, and at most hmax",
       [](auto& o) -> auto& { return o.domain.enclose.h; }));
   add(length_row(
       "size.hmin", "--hmin,--clmin", "no cell side asked for below this",
@@ -425,6 +426,7 @@ static void set_farfield(Options& options, const std::string& text) {
   };
   if (shape == "none" && size.empty()) {
     enclose.shape = shape;
+    enclose.h.reset();  // of the far field that the job file asks for
     return;
   }
   if (shape != "sphere" && shape != "box")
@@ -445,8 +447,10 @@ static void set_farfield(Options& options, const std::string& text) {
 const std::vector<Shorthand>& shorthand_table() {
   static const std::vector<Shorthand> table = {
       {"--farfield", "SHAPE:SIZE",
-       "outer boundary around the body: sphere:20c, box:10c (c = the body's longest side), or box:xmin,…,zmax", true,
-       set_farfield},
+       "outer boundary around the body: sphere:20c, box:10c (c = the body's longest side), or box:xmin,…,zmax; patches "
+       "of "
+       "the input get the kind wall unless they have one",
+       true, set_farfield},
       {"--no-improve", "", "no improvement after gridding", false,
        [](Options& o, const std::string&) { o.improve.enabled = false; }},
       {"--ascii", "", "write text instead of binary, where a format has both", false,

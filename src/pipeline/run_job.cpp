@@ -28,6 +28,7 @@ struct Run {
   Context& context;
   JobResult& result;
   std::vector<NamedMesh> inputs;
+  PatchId far_field;  ///< the patch of domain.enclose, where there is one
 };
 
 /// FNV-1a, 64 bits: tells whether two runs had the same input; no protection against malice.
@@ -66,6 +67,48 @@ void check_gates(const std::string& gates) {
   failed_gates(measure_quality(cell, quiet), gates);
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;  // a device, such as /dev/null
+  const fs::path whole_a = fs::weakly_canonical(a, ignored), whole_b = fs::weakly_canonical(b, ignored);
+  return !whole_a.empty() && whole_a == whole_b;
+}
+
+/// The first of these that writing `path` would destroy, or nullptr.
+const std::string* find_same(const std::string& path, const std::vector<std::string>& others) {
+  const auto found =
+      std::find_if(others.begin(), others.end(), [&](const std::string& other) { return is_same_file(path, other); });
+  return found == others.end() ? nullptr : &*found;
+}
+
+/// No file may be written over an input or over another output of the same run.
+void check_files_differ(const Options& options) {
+  std::vector<std::string> taken = options.input.files;
+  const auto add = [&taken](const std::string& path, const char* role) {
+    if (path.empty()) return;
+    if (const std::string* other = find_same(path, taken))
+      throw UsageError(fmt::format("{} {} would be written over {}, a file of the same run; give it another name", role,
+                                   path, *other));
+    taken.push_back(path);
+  };
+  if (writes_grid(options))
+    for (const std::string& path : options.output.files) add(path, "the output");
+  add(options.output.report, "the report");
+  add(options.output.defects, "the defects file");
+}
+
+/// A grid without its cells is never written under the asked name.
+void check_holds_cells(const Options& options, const std::string& path) {
+  if (options.stop_after == "surface" || options.volume.method == "none") return;
+  const std::string& name = format_of(path, options.output.format, true).name;
+  for (const char* surface_only : {"stl", "obj", "ply", "off", "vtp"})
+    if (name == surface_only)
+      throw UsageError(
+          fmt::format("{}: {} holds surfaces only, and the result is a grid of cells; write vtu, msh, mesh, "
+                      "su2 or an OpenFOAM case (or the surface alone: --stop-after surface)",
+                      path, name));
+}
+
 /// What is wrong with the options as a whole, and with the places of the outputs, is said before any work.
 void check_before_work(const Options& options) {
   if (options.input.files.empty()) throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
@@ -76,6 +119,8 @@ void check_before_work(const Options& options) {
     throw UsageError("domain.enclose.size: the size of the far field is missing, e.g. size = \"20c\"");
   if (enclose.shape == "sphere" && enclose.corners)
     throw UsageError("domain.enclose.corners: a sphere has none; give size, or shape = \"box\"");
+  if (enclose.h && !has_far_field(options))
+    throw UsageError("--farfield-h (domain.enclose.h): there is no far field; add e.g. --farfield box:10c");
   if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
     throw UsageError("output.units: the unit of the input is not known; say it with --units (input.units)");
   check_gates(options.output.require);
@@ -83,10 +128,12 @@ void check_before_work(const Options& options) {
   if (writes_grid(options))
     for (const std::string& path : options.output.files) {
       format_of(path, options.output.format, true);
+      check_holds_cells(options, path);
       check_writable(path);
     }
   for (const std::string& path : {options.output.report, options.output.defects})
     if (!path.empty()) check_writable(path);
+  check_files_differ(options);
 }
 
 void read_inputs(Run& run) {
@@ -116,15 +163,43 @@ void resolve_lengths(Options& options, const LengthScale& scale) {
   if (options.size.hmin && options.size.hmax && options.size.hmin->value > options.size.hmax->value)
     throw UsageError(
         fmt::format("size.hmin ({:g}) is above size.hmax ({:g})", options.size.hmin->value, options.size.hmax->value));
+  // no side above hmax, on the far field neither
+  if (has_far_field(options) && !enclose.h && options.size.hmax)
+    enclose.h = Length{std::min(default_far_field_side(enclose), options.size.hmax->value), ""};
+}
+
+/// The far field and the patches' names and kinds. What the input holds is a wall in the flow unless said otherwise.
+void set_boundaries(Run& run, Model& model) {
+  Options& options = run.options;
+  std::vector<BoundaryOptions> boundaries = options.boundaries;
+  if (has_far_field(options) && options.stop_after == "geometry") {
+    // Only the input is looked at: what is said of the far field has nothing to stand for.
+    const std::string& name = options.domain.enclose.name;
+    std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
+  } else if (has_far_field(options)) {
+    run.far_field = add_far_field(model, options.domain.enclose, run.result.scale, run.context);
+    if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
+  }
+  run.far_field = apply_boundaries(boundaries, model, run.far_field);
+  if (has_far_field(options)) {
+    for (Patch& patch : model.patches)
+      if (patch.kind.empty()) patch.kind = "wall";
+  } else if (options.domain.keep == "outside" &&
+             std::none_of(model.patches.begin(), model.patches.end(),
+                          [](const Patch& patch) { return patch.kind == "farfield"; })) {
+    throw UsageError(
+        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield box:10c, or "
+        "give the outer patch the kind farfield ([boundaries.NAME])");
+  }
 }
 
 Model make_model(Run& run) {
   Model model = build_model(run.inputs, run.context);
   model.feature_angle = run.options.input.feature_angle;
-  apply_boundaries(run.options.boundaries, model);
   const Box box = model.bounding_box();
   run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
   resolve_lengths(run.options, run.result.scale);
+  set_boundaries(run, model);
   return model;
 }
 
@@ -160,20 +235,27 @@ void stop_at_surface(Run& run, Model model) {
   write_outputs(run);
 }
 
+/// generate() knows the outer boundary by its kind, "farfield"; a kind that the job gives it goes to the grid alone.
+Outcome generate_in_far_field(const Run& run, Model model) {
+  if (!run.far_field.is_valid()) return generate(std::move(model), run.options, run.context);
+  const Patch asked = model.patches[run.far_field];
+  model.patches[run.far_field].kind = "farfield";
+  Outcome outcome = generate(std::move(model), run.options, run.context);
+  const GroupId group = outcome.mesh.find_group(2, asked.name);
+  if (group.is_valid()) outcome.mesh.groups[group].kind = asked.kind;
+  return outcome;
+}
+
 void work(Run& run) {
   check_floating_point_mode();
   check_before_work(run.options);
   read_inputs(run);
   Model model = make_model(run);
   if (run.options.stop_after == "geometry") return stop_at_surface(run, std::move(model));
-  if (has_far_field(run.options)) {
-    add_far_field(model, run.options.domain.enclose, run.result.scale, run.context);
-    if (run.options.domain.keep.empty() && run.options.domain.keep_points.empty()) run.options.domain.keep = "outside";
-  }
   if (run.options.stop_after == "surface" || run.options.volume.method == "none")
     return stop_at_surface(run, std::move(model));
   if (run.options.stop_after == "volume") run.options.improve.enabled = false;
-  Outcome outcome = generate(std::move(model), run.options, run.context);
+  Outcome outcome = generate_in_far_field(run, std::move(model));
   run.result.report = std::move(outcome.report);
   run.result.mesh = std::move(outcome.mesh);
   run.context.check_cells(run.result.report.quality.num_cells);
@@ -217,6 +299,8 @@ void write_defects_file(Run& run) {
   if (findings.empty() || (!is_asked_for && !has_errors(findings))) return;
   const std::string path = is_asked_for ? run.options.output.defects : default_defects_path(run.options);
   try {
+    if (find_same(path, run.options.input.files))
+      throw UsageError(path + " is an input; --defects FILE names another place");
     write_defects(findings, path, surface.points.empty() ? nullptr : &surface, quiet);
     result.defects_file = path;
   } catch (const Error& e) {
@@ -255,6 +339,8 @@ void work_and_catch(Run& run) {
 /// The report of the run. That it cannot be written is the run's failure only where nothing worse happened.
 void write_report(const Options& options, const std::string& command, JobResult& result) {
   if (options.output.report.empty()) return;
+  if (find_same(options.output.report, options.input.files) || find_same(options.output.report, options.output.files))
+    return;  // refused before the work
   try {
     write_text_file(options.output.report, report_json(result, options, command));
   } catch (const Error& e) {
@@ -286,7 +372,7 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
     result.stage = progress.stage;
     if (outer_progress) outer_progress(progress);
   };
-  Run run{options, context, result, {}};
+  Run run{options, context, result, {}, {}};
   work_and_catch(run);
   context.on_log = outer_log;
   context.on_progress = outer_progress;

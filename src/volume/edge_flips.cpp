@@ -140,9 +140,12 @@ bool EdgeFlips::make_locally_delaunay(FaceRef ref) {
   if (c_.is_constrained(ref) || c_.is_ghost(t) || c_.is_ghost(other)) return false;
   const VertexIndex top = c_.node[ref], bottom = c_.node[c_.neigh[ref]];
   const std::uint32_t* node = &c_.node[4 * t];
-  if (insphere_perturbed(c_.point(node[0]), c_.point(node[1]), c_.point(node[2]), c_.point(node[3]),
-                         c_.point(bottom)) <= 0)
-    return false;
+  const int inside = c_.segment_points.empty()
+                         ? insphere_perturbed(c_.point(node[0]), c_.point(node[1]), c_.point(node[2]),
+                                              c_.point(node[3]), c_.point(bottom))
+                         : insphere_perturbed(c_.exact(node[0]), c_.exact(node[1]), c_.exact(node[2]),
+                                              c_.exact(node[3]), c_.exact(bottom));
+  if (inside <= 0) return false;
   const auto n = c_.face_nodes(ref);
   int reflex = -1, sides = 0, sign = 0;
   for (int k = 0; k < 3; ++k) {

@@ -42,7 +42,6 @@ class EdgeFlips {
   ///
   /// Recovery leaves flat tets with huge spheres behind; insertion by cavity never gets rid of those.
   /// @return switches made
-  /// @pre all points are explicit
   /// @par Source  Lawson (1977); in space: Joe (1989)
   std::size_t restore_delaunay(Context& context);
 

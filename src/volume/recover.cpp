@@ -182,6 +182,16 @@ std::vector<SplitTriangle> find_split_triangles(const Segments& segments) {
   return split;
 }
 
+void warn_of_split(const BoundaryGrid& grid, const RecoveryReport& report, Context& context) {
+  if (report.steiner_left == 0) return;
+  const Point at = report.left.empty() ? Point{} : report.left[0].at;
+  context.log(
+      LogLevel::warning,
+      fmt::format("the surface is not kept as it was given: {} points stay on its edges, the first at "
+                  "({:g}, {:g}, {:g}), and {} of its triangles are divided; more room between its parts there helps",
+                  report.steiner_left, at.x, at.y, at.z, grid.split.size()));
+}
+
 /// Powers of two that make the longest sides of a thin model's box alike; {1, 1, 1} where it is not thin.
 std::array<double, 3> stretch_of(const Box& box) {
   constexpr double kThin = 16;
@@ -237,6 +247,7 @@ BoundaryGrid try_boundary(const Model& model, const std::array<double, 3>& facto
   const RequiredEdges none{Segments{}};
   EdgeFlips(grid.complex, none).restore_delaunay(context);
   if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
+  warn_of_split(grid, report, context);
   return grid;
 }
 

@@ -21,7 +21,7 @@ constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;  ///< of the wanted size, between points
 constexpr std::size_t kPointsPerCancelCheck = 4096;
 constexpr std::uint64_t kMaxSteps = 1000;  ///< to a proposal's tet, 5 on average: beyond, a walk among slivers wanders
-constexpr std::size_t kRecent = 16;       ///< points inserted last that are looked at first
+constexpr std::size_t kRecent = 16;        ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
 constexpr std::size_t kWorthRadixSort = 4096;
 

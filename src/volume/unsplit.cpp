@@ -11,12 +11,15 @@
 #include <map>
 #include <optional>
 
+#include "volume/edge_flips.hpp"
 #include "volume/facets.hpp"
 #include "volume/visible_point.hpp"
 
 namespace delfront {
 
 namespace {
+
+constexpr int kMaxPasses = 20;
 
 using Face = std::array<VertexIndex, 3>;
 
@@ -203,7 +206,7 @@ class PointRemoval {
           const Point n = cross(c_.point(path.vertices[0]) - s, c_.point(path.vertices[1]) - s);
           if (const double l = length(n); l > 0) inwards = inwards + (side == 0 ? 1 : -1) * n / l;
         }
-    sector.moved = find_visible_point(walls, s, {centre - s, inwards}, reach);
+    sector.moved = find_visible_point(walls, s, {centre - s, inwards}, reach, true);
     return sector.moved.has_value();
   }
 
@@ -311,6 +314,34 @@ void forget(Segments& segments, VertexIndex s) {
   std::erase_if(chain, [&](const Segments::Steiner& p) { return p.vertex == s; });
 }
 
+/// Moves the free vertices around s to where their own tets are best.
+void make_room(TetComplex& c, VertexIndex s) {
+  std::vector<TetIndex> star, ball;
+  c.star(s, star);
+  std::vector<VertexIndex> around;
+  for (const TetIndex t : star)
+    for (unsigned k = 0; k < 4; ++k)
+      if (const VertexIndex v = c.node[4 * t + k];
+          v != kGhost && v != s && !c.on_boundary[v] && !c.segment_points.contains(v))
+        around.push_back(v);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const VertexIndex v : around) {
+    c.star(v, ball);
+    std::vector<Wall> walls;
+    Point centre;
+    double reach = 0;
+    for (const TetIndex t : ball) {
+      const Face f = c.face_nodes(4 * t + static_cast<unsigned>(c.local_index(t, v)));
+      walls.push_back({c.exact(f[0]), c.exact(f[1]), c.exact(f[2])});
+      for (const VertexIndex w : f) centre = centre + c.point(w) / (3 * static_cast<double>(ball.size()));
+      reach = std::max(reach, distance(c.point(v), c.point(f[0])));
+    }
+    if (const auto place = find_visible_point(walls, c.point(v), {centre - c.point(v)}, reach))
+      c.vertex[v] = {place->x, place->y, place->z, c.vertex[v].h};
+  }
+}
+
 /// Points that stay become plain coordinates; every tet around them has to stay positive.
 void round_points(TetComplex& c, const std::vector<VertexIndex>& left, RecoveryReport& report) {
   std::vector<TetIndex> star;
@@ -346,8 +377,9 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
   report.steiner_points = segments.steiner_edge.size();
   std::reverse(left.begin(), left.end());  // the last ones split the shortest pieces
   PointRemoval removal(complex, segments);
-  for (std::size_t before = left.size() + 1; !left.empty() && left.size() < before;) {
-    before = left.size();
+  const RequiredEdges none{Segments{}};  // constrained faces hold all edges that matter
+  EdgeFlips flips(complex, none);
+  for (int pass = 0; pass < kMaxPasses && !left.empty(); ++pass) {
     std::vector<VertexIndex> still;
     for (std::size_t i = 0; i < left.size(); ++i) {
       if (removal.remove(left[i])) {
@@ -358,7 +390,12 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
       }
       if (i % 64 == 0) context.progress("recover", i, left.size(), "points moved off edges");
     }
+    const bool is_stuck = still.size() == left.size();
     left = std::move(still);
+    if (!is_stuck) continue;
+    // Other tets around a point, or its neighbours at better places, may let it go.
+    for (const VertexIndex s : left) make_room(complex, s);
+    flips.restore_delaunay(context);
   }
   report.steiner_left = left.size();
   round_points(complex, left, report);

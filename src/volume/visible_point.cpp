@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace delfront {
 
@@ -10,6 +11,7 @@ namespace {
 
 constexpr int kHalvings = 60;  ///< of the first step: down to the resolution of doubles
 constexpr int kClimbSteps = 30;
+constexpr int kRelaxations = 1000, kStepsPerMargin = 40;
 
 double worst_ratio(const std::vector<Wall>& walls, Point p) {
   double worst = 1;
@@ -44,10 +46,31 @@ Point climb(const std::vector<Wall>& walls, Point p, double best, double step) {
   return p;
 }
 
+/// Steps to the front of the wall that lies worst, again and again, by margins that shrink: finds thin kernels too.
+/// Source: the relaxation method for linear inequalities, Agmon (1954), Motzkin & Schoenberg (1954).
+std::optional<Point> relax(const std::vector<Wall>& walls, Point p, double reach) {
+  double margin = 0.1 * reach;
+  for (int k = 0; k < kRelaxations; ++k) {
+    if (k % kStepsPerMargin == kStepsPerMargin - 1) margin *= 0.25;
+    double worst = std::numeric_limits<double>::infinity();
+    Point normal;
+    for (const Wall& w : walls) {
+      Point n = cross(w[1].approx - w[0].approx, w[2].approx - w[0].approx);
+      const double l = length(n);
+      if (!(l > 0)) continue;
+      n = n / l;
+      if (const double d = dot(n, p - w[0].approx); d < worst) worst = d, normal = n;
+    }
+    if (worst > 0 && sees_all(walls, p)) return p;
+    if (worst < margin) p = p + (margin - worst) * normal;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start,
-                                        const std::vector<Point>& directions, double reach) {
+                                        const std::vector<Point>& directions, double reach, bool at_any_cost) {
   std::optional<Point> found;
   double best = 0;
   for (const Point& towards : directions) {
@@ -62,6 +85,7 @@ std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point st
       found = p, best = ratio;
     }
   }
+  if (!found && at_any_cost && (found = relax(walls, start, reach))) best = worst_ratio(walls, *found);
   return found ? climb(walls, *found, best, 0.25 * reach) : found;
 }
 

@@ -15,8 +15,8 @@ using Wall = std::array<ExactPoint, 3>;
 /// @brief A place that lies strictly in front of all walls, so that tets from it to them are positive.
 ///
 /// Searched from `start`, whose neighbourhood is expected to hold one, along each direction at ever smaller steps, then
-/// moved uphill in the worst mean ratio of the tets.
+/// moved uphill in the worst mean ratio of the tets. `at_any_cost`: thin places that only relaxation finds will do too.
 std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start,
-                                        const std::vector<Point>& directions, double reach);
+                                        const std::vector<Point>& directions, double reach, bool at_any_cost = false);
 
 }  // namespace delfront

@@ -130,7 +130,7 @@ class Outputs(case.Case):
         self.expect(0, "mesh", "box.stl", "-o", "out.vtu", "--farfield", "box:3c", "--report", "r.json")
         report = self.report("r.json")
         self.assertAlmostEqual(report["quality"]["volume"], 6**3 - 1, delta=1e-6)
-        self.assertEqual({b["name"]: b["kind"] for b in report["boundaries"]}, {"body": "", "farfield": "farfield"})
+        self.assertEqual({b["name"]: b["kind"] for b in report["boundaries"]}, {"body": "wall", "farfield": "farfield"})
 
 
 class Threads(case.Case):

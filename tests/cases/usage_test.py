@@ -9,7 +9,8 @@ import case
 class Help(case.Case):
     def test_help_shows_commands_examples_formats_and_exit_codes(self):
         self.expect(0, "--help", says=["delfront mesh", ".stl", ".vtu", "OpenFOAM", "Exit codes"])
-        self.expect(0, "mesh", "--help", says=["Examples:", "--farfield", "--hmax,--clmax", "--set", "LENGTH:"])
+        self.expect(0, "mesh", "--help", says=["Examples:", "--farfield", "the kind wall", "--hmax,--clmax", "--set",
+                                               "LENGTH:"])
         for command in ("check", "info", "convert"):
             self.expect(0, command, "--help", says="xample")
 
@@ -51,11 +52,47 @@ class Slips(case.Case):
         self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--hmax", "2mm", says="--units")
         self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--output-units", "mm", says="--units")
 
+    def test_one_file_too_many_is_said(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(2, "check", "a.stl", "b.stl", says="'b.stl' is one argument too many: one FILE only")
+        self.expect(2, "info", "a.stl", "a.stl", says="one FILE only")
+        self.expect(2, "convert", "a.stl", "b.stl", "c.stl", says="one IN, one OUT only")
+
+    def test_the_file_that_is_looked_at_is_not_written_over(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(2, "check", "a.stl", "--defects", "a.stl", says="overwritten")
+        self.expect(2, "check", "a.stl", "--json", "./a.stl", says="overwritten")
+        self.expect(2, "info", "a.stl", "--json", "a.stl", says="overwritten")
+        self.expect(2, "convert", "a.stl", "./a.stl", says="overwritten")
+        self.expect(2, "mesh", "a.stl", "-o", "./a.stl", "--stop-after", "surface", says="written over")
+        self.expect(0, "info", "a.stl")
+
+    def test_a_far_field_is_there_where_it_is_spoken_of(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--farfield-h", "1", says="there is no far field")
+        self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--keep", "outside", says="there is no far field")
+        self.assertEqual(self.files(), ["a.stl"])
+
     def test_gates_are_read_before_the_work(self):
         self.write("a.stl", case.stl_ascii(case.box_triangles()))
         self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--require", "mindihedral > 3", says="did you mean 'min_dihedral'?")
         self.expect(2, "mesh", "a.stl", "-o", "a.vtu", "--require", "min_dihedral >")
         self.assertEqual(self.files(), ["a.stl"])
+
+
+class Order(case.Case):
+    def test_an_option_takes_one_word_and_the_file_may_stand_anywhere(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        self.write("b.stl", case.stl_ascii(case.box_triangles((3, 0, 0), (4, 1, 1))))
+        for words in (["-o", "o.vtu", "a.stl"], ["--require", "min_dihedral>8", "a.stl", "-o", "o.vtu"],
+                      ["--hmax", "5%", "a.stl", "-o", "o.vtu"], ["--set", "size.growth=1.3", "a.stl", "-o", "o.vtu"],
+                      ["--stop-after", "geometry", "a.stl"], ["--farfield", "box:3", "a.stl", "-o", "o.vtu"]):
+            result = self.expect(0, "mesh", *words, "--print-config")
+            self.assertIn('files = ["a.stl"]', result.stdout)
+        result = self.expect(0, "mesh", "-o", "o.vtu", "a.stl", "-o", "o.su2", "b.stl", "--print-config")
+        self.assertIn('files = ["a.stl", "b.stl"]', result.stdout)
+        self.assertIn('files = ["o.vtu", "o.su2"]', result.stdout)
+        self.expect(0, "mesh", "-o", "o.vtu", "a.stl")
 
 
 class JobFiles(case.Case):
@@ -74,7 +111,13 @@ class JobFiles(case.Case):
         self.expect(2, "mesh", "case.toml", says=["case.toml:2", "not valid TOML"])
 
     def test_missing_job_file(self):
-        self.expect(3, "mesh", "nothere.toml", says="nothere.toml")
+        self.expect(2, "mesh", "nothere.toml", says="nothere.toml")
+
+    def test_a_job_file_and_a_surface_are_not_mixed(self):
+        self.write("case.toml", "[input]\nfiles = ['a.stl']\n[output]\nfiles = ['a.vtu']\n")
+        self.expect(2, "mesh", "case.toml", "b.stl", says=["'b.stl'", "job file already names its input"])
+        self.write("sizes.toml", "[size]\nhmax = 2\n")
+        self.expect(0, "mesh", "sizes.toml", "b.stl", "--print-config", says='files = ["b.stl"]')
 
     def test_later_words_win(self):
         self.write("case.toml", "[input]\nfiles = ['a.stl']\n[size]\nhmax = 1\nhmin = 0.1\ngrowth = 1.2\n")

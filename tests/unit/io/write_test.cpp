@@ -293,5 +293,22 @@ TEST(OtherPrograms, gmsh_reads_our_msh) {
     }
 }
 
+// meshio takes an array for another one where the offsets rise along the file: see vtk_output.hpp.
+TEST(Write, vtu_appends_the_last_array_first) {
+  const fs::path folder = scratch_folder("io_vtu_order");
+  Context context;
+  for (const bool compress : {false, true}) {
+    const std::string path = (folder / "a.vtu").string();
+    write_mesh(two_boxes(), path, context, {.binary = true, .version = "", .compress = compress});
+    const std::string text = contents(path);
+    std::vector<std::size_t> offsets;
+    for (std::size_t at = 0; (at = text.find(" offset=\"", at)) != std::string::npos; ++at)
+      offsets.push_back(std::stoul(text.substr(at + 9)));
+    ASSERT_GE(offsets.size(), 5u);
+    EXPECT_TRUE(std::is_sorted(offsets.rbegin(), offsets.rend()));
+    EXPECT_EQ(offsets.back(), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace delfront

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "delfront/io.hpp"
 #include "delfront/job.hpp"
@@ -73,6 +75,86 @@ TEST_F(RunJob, an_open_surface_is_refused_with_its_places) {
   EXPECT_TRUE(fs::exists(path("cube_defects.vtp")));
   EXPECT_FALSE(fs::exists(path("cube.vtu")));
   EXPECT_EQ(report()["outcome"], "bad_input");
+}
+
+TEST_F(RunJob, nothing_is_written_over_an_input_or_another_output) {
+  std::ostringstream before;
+  before << std::ifstream(path("cube.obj")).rdbuf();
+  const auto expect_refused = [&](const std::string& output, const std::string& report, const std::string& defects) {
+    SCOPED_TRACE(output + " " + report + " " + defects);
+    options_.output.files = {path("cube.vtu"), path(output)};
+    options_.output.report = path(report);
+    options_.output.defects = path(defects);
+    const JobResult result = run();
+    EXPECT_EQ(result.exit_code, ExitCode::usage);
+    EXPECT_NE(result.error.find("would be written over"), std::string::npos) << result.error;
+    EXPECT_FALSE(fs::exists(path("cube.vtu")));
+    std::ostringstream after;
+    after << std::ifstream(path("cube.obj")).rdbuf();
+    EXPECT_EQ(before.str(), after.str());
+  };
+  expect_refused("cube.vtu", "r.json", "d.vtp");
+  expect_refused("./cube.vtu", "r.json", "d.vtp");
+  expect_refused("b.vtu", "cube.obj", "d.vtp");
+  expect_refused("b.vtu", "cube.vtu", "d.vtp");
+  expect_refused("b.vtu", "r.json", "b.vtu");
+  expect_refused("b.vtu", "r.json", "r.json");
+}
+
+TEST_F(RunJob, a_grid_is_not_written_as_a_surface) {
+  for (const char* name : {"grid.stl", "grid.obj", "grid.ply", "grid.off", "grid.vtp"}) {
+    options_.stop_after = "write";
+    options_.output.files = {path(name)};
+    const JobResult result = run();
+    EXPECT_EQ(result.exit_code, ExitCode::usage) << name;
+    EXPECT_FALSE(fs::exists(path(name)));
+    options_.stop_after = "surface";
+    EXPECT_EQ(run().exit_code, ExitCode::done) << name;
+    EXPECT_TRUE(fs::exists(path(name)));
+  }
+}
+
+TEST_F(RunJob, boundaries_name_the_far_field_and_give_it_a_kind) {
+  options_.domain.enclose.shape = "box";
+  options_.domain.enclose.size = Length{3, ""};
+  const auto kinds = [](const JobResult& result) {
+    std::map<std::string, std::string> found;
+    for (const Group& group : result.mesh.groups)
+      if (group.dimension == 2) found[group.name] = group.kind;
+    return found;
+  };
+  options_.boundaries = {{"body", "*", ""}, {"farfield", "", "inlet"}};
+  const JobResult kept = run();
+  ASSERT_EQ(kept.exit_code, ExitCode::done) << kept.error;
+  EXPECT_NEAR(kept.report.quality.volume, 6 * 6 * 6 - 1, 1e-9) << "the outside alone";
+  EXPECT_EQ(kinds(kept), (std::map<std::string, std::string>{{"body", "wall"}, {"farfield", "inlet"}}));
+  options_.boundaries = {{"body", "*", "patch"}, {"tunnel", "farfield", ""}};
+  const JobResult renamed = run();
+  ASSERT_EQ(renamed.exit_code, ExitCode::done) << renamed.error;
+  EXPECT_EQ(kinds(renamed), (std::map<std::string, std::string>{{"body", "patch"}, {"tunnel", "farfield"}}));
+  options_.boundaries = {{"farfield", "*", "wall"}};
+  EXPECT_EQ(run().exit_code, ExitCode::usage) << "two patches of one name";
+  options_.boundaries = {{"farfield", "", "inlet"}};
+  options_.stop_after = "geometry";
+  EXPECT_EQ(run().exit_code, ExitCode::done);
+}
+
+TEST_F(RunJob, hmax_holds_on_the_far_field) {
+  options_.domain.enclose.shape = "box";
+  options_.domain.enclose.size = Length{3, ""};
+  options_.stop_after = "surface";
+  const auto count_triangles = [this] {
+    const JobResult result = run();
+    EXPECT_EQ(result.exit_code, ExitCode::done) << result.error;
+    return result.mesh.find_block(CellType::triangle)->size() - 12;
+  };
+  EXPECT_EQ(count_triangles(), 6u * 10 * 10 * 2) << "a fifth of the half side";
+  options_.size.hmax = Length{2, ""};
+  EXPECT_EQ(count_triangles(), 6u * 10 * 10 * 2);
+  options_.size.hmax = Length{0.5, ""};
+  EXPECT_EQ(count_triangles(), 6u * 12 * 12 * 2);
+  options_.domain.enclose.h = Length{1, ""};
+  EXPECT_EQ(count_triangles(), 6u * 6 * 6 * 2) << "said outright";
 }
 
 TEST_F(RunJob, cancelling_writes_nothing) {
