@@ -17,6 +17,7 @@ import json
 import os
 import platform
 import re
+import resource
 import shutil
 import statistics
 import subprocess
@@ -194,6 +195,7 @@ class Run:
     whole: float
     phase: float | None
     rss: float  # bytes
+    rss_floor: float  # our own memory at the start: Linux counts it as the child's until that has more
     status: str  # "" or why there is no result
 
 
@@ -201,6 +203,7 @@ def run_once(tool: Tool, command: list[str], folder: Path, limit: float) -> Run:
     for old in [folder / tool.output, folder / "report.json"]:
         old.unlink(missing_ok=True)
     log = folder / "log.txt"
+    floor = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
     with log.open("w") as sink:
         start = time.perf_counter()
         process = subprocess.Popen(command, cwd=folder, stdout=sink, stderr=subprocess.STDOUT)
@@ -218,7 +221,7 @@ def run_once(tool: Tool, command: list[str], folder: Path, limit: float) -> Run:
         tail = log.read_text(errors="replace").strip().splitlines()[-1:] or [""]
         reason = f"failed (status {process.returncode}): {tail[0][:90]}"
     phase = None if reason else tool.phase(log.read_text(errors="replace"), folder)
-    return Run(whole, phase, usage.ru_maxrss * 1024, reason)
+    return Run(whole, phase, usage.ru_maxrss * 1024, floor, reason)
 
 
 # --- reading and measuring the output ---------------------------------------------------------------------------------
@@ -331,9 +334,11 @@ def line_of(row: Row) -> str:
     whole = statistics.median(run.whole for run in row.runs)
     phases = [run.phase for run in row.runs if run.phase is not None]
     rss = statistics.median(run.rss for run in row.runs)
+    is_known = all(run.rss > 1.02 * run.rss_floor for run in row.runs)
     per_phase = f"{q.tets / statistics.median(phases) / 1e3:.0f} k" if phases else "-"
     cells = [f"{q.tets:,}", spread(phases) if phases else "-", per_phase, spread([run.whole for run in row.runs])]
-    cells += [f"{q.tets / whole / 1e3:.0f} k", f"{rss / 2**20:.0f}", f"{rss / q.tets:.0f}"]
+    cells += [f"{q.tets / whole / 1e3:.0f} k", f"{'' if is_known else '≤ '}{rss / 2**20:.0f}"]
+    cells.append(f"{rss / q.tets:.0f}" if is_known else "–")
     cells += [f"{q.min_dihedral:.2f}", f"{100 * q.below_10:.3f} %", f"{q.mean_eta:.3f}"]
     return f"{start} " + " | ".join(cells) + " |"
 
