@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "delfront/context.hpp"
+#include "delfront/delaunay.hpp"
 #include "delfront/findings.hpp"
 #include "delfront/grid_check.hpp"
 #include "delfront/mesh.hpp"
@@ -25,8 +26,10 @@ struct RecoveryReport {
 /// @brief What refinement did (T3).
 struct RefineReport {
   std::size_t points_inserted = 0;
+  std::size_t points_in_core = 0;  ///< of these, on the lattice of the uniform core
   std::size_t candidates = 0;  ///< proposed, before the filters
   std::size_t rounds = 0;
+  KernelCounts kernel;
 };
 
 /// @brief What improvement did (T5).

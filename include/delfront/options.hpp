@@ -60,8 +60,15 @@ struct SizeOptions {
   std::optional<double> growth;  ///< > 1; absent: 1.2, and cells no larger than the largest boundary edges
 };
 
+/// @brief Grids in the plane.
+struct PlanarOptions {
+  std::string boundary = "keep";  ///< keep: the given points and no others; split: divided where sizes ask for it
+  double min_angle = 30;          ///< degrees, goal
+};
+
 struct VolumeOptions {
   std::string method = "delaunay";  ///< delaunay none
+  bool core = true;                 ///< a regular lattice where sizes are at their largest, far from the boundary
 };
 
 struct ImproveOptions {
@@ -96,6 +103,7 @@ struct Options {
   std::vector<BoundaryOptions> boundaries;
   SizeOptions size;
   VolumeOptions volume;
+  PlanarOptions planar;
   ImproveOptions improve;
   LimitOptions limits;
   OutputOptions output;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -26,6 +27,9 @@ class SizeField {
 
   /// @brief A guaranteed lower bound of the size over a box.
   virtual double lower_bound(const Box& box) const = 0;
+
+  /// @brief A value that no size exceeds, infinite where there is none.
+  virtual double largest() const { return std::numeric_limits<double>::infinity(); }
 
   double size(Point at) const {
     double result = 0;

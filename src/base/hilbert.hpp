@@ -19,11 +19,12 @@ class HilbertCurve {
   double scale_[3];
 };
 
-/// @brief Indices of `points` in Hilbert order; equal keys by index. Deterministic.
+/// @brief Indices of `points` in Hilbert order; where a cell of the finest level holds many points, in the order of a
+/// finer curve through them. Equal points are neighbours, by index. Deterministic.
 /// @par Cost  O(n), radix sort
-std::vector<std::uint32_t> hilbert_order(std::span<const Point> points);
+std::vector<std::uint32_t> hilbert_order(std::span<const Point> points, int threads = 1);
 
 /// @brief Sort (key, value) pairs by key, stable. @par Cost O(n)
-void radix_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& items);
+void radix_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& items, int threads = 1);
 
 }  // namespace delfront

@@ -1,46 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Biased randomized insertion order: rounds that grow by kRoundGrowth, each along a Hilbert curve, so that a walk is
-// short and memory is met in order, while no adversary's order makes cavities large.
+// The Delaunay tetrahedrization of a set of points. Vertices are renumbered along a Hilbert curve for the time of the
+// build, so that memory is met in order.
 #include <algorithm>
 
-#include "base/hilbert.hpp"
+#include "base/parallel.hpp"
 #include "delaunay/delaunay.hpp"
+#include "delaunay/territories.hpp"
 
 namespace delfront {
 
 namespace {
 
-constexpr double kRoundGrowth = 7.5;
-constexpr std::size_t kFirstRound = 2048;
-constexpr std::size_t kPointsPerCancelCheck = 4096;
-
-std::vector<VertexIndex> insertion_order(const TetComplex& complex) {
-  const std::size_t n = complex.num_vertices();
-  std::vector<VertexIndex> order(n);
-  for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<VertexIndex>(i);
-  std::uint64_t state = 88172645463325252ull;  // xorshift64: a fixed seed, so the same order in every run
-  for (std::size_t i = n; i > 1; --i) {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    std::swap(order[i - 1], order[state % i]);
-  }
-  Box box;
-  for (const TetVertex& v : complex.vertex) box.add(v.point());
-  const HilbertCurve curve(box);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
-  std::size_t last = n;
-  while (last > 0) {  // rounds from the last, largest one back to the first
-    std::size_t first = static_cast<std::size_t>(static_cast<double>(last) / kRoundGrowth);
-    if (first < kFirstRound) first = 0;
-    keyed.clear();
-    for (std::size_t i = first; i < last; ++i) keyed.push_back({curve.key(complex.point(order[i])), order[i]});
-    radix_sort(keyed);
-    for (std::size_t i = first; i < last; ++i) order[i] = keyed[i - first].second;
-    last = first;
-  }
-  return order;
-}
+constexpr std::size_t kGrain = 1 << 14;
 
 bool are_collinear(Point a, Point b, Point c) {
   auto flat = [&](int i, int j) {
@@ -50,47 +21,107 @@ bool are_collinear(Point a, Point b, Point c) {
   return flat(0, 1) && flat(1, 2) && flat(2, 0);
 }
 
-/// Moves four vertices that span a volume to the front of the order.
-void find_first_tet(const TetComplex& complex, std::vector<VertexIndex>& order) {
-  auto bring = [&](std::size_t to, auto&& fits) {
-    for (std::size_t i = to; i < order.size(); ++i)
-      if (fits(complex.point(order[i]))) {
-        std::rotate(order.begin() + static_cast<std::ptrdiff_t>(to), order.begin() + static_cast<std::ptrdiff_t>(i),
-                    order.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        return true;
-      }
-    return false;
+/// Four vertices that span a volume.
+std::array<VertexIndex, 4> find_first_tet(const TetComplex& complex) {
+  const auto n = static_cast<VertexIndex>(complex.num_vertices());
+  auto find = [&](VertexIndex from, auto&& fits) {
+    while (from < n && !fits(complex.point(from))) ++from;
+    return from;
   };
-  if (order.size() < 4) throw InputError("fewer than four points: nothing to tetrahedralize");
-  const Point a = complex.point(order[0]);
-  if (!bring(1, [&](Point p) { return !(p == a); })) throw InputError("all points are at one place");
-  const Point b = complex.point(order[1]);
-  if (!bring(2, [&](Point p) { return !are_collinear(a, b, p); })) throw InputError("all points lie on one line");
-  const Point c = complex.point(order[2]);
-  if (!bring(3, [&](Point p) { return orient3d(a, b, c, p) != 0; }))
-    throw InputError("all points lie in one plane: there is no volume to grid");
+  if (n < 4) throw InputError("fewer than four points: nothing to tetrahedralize");
+  const Point a = complex.point(0);
+  const VertexIndex i = find(1, [&](Point p) { return !(p == a); });
+  if (i == n) throw InputError("all points are at one place");
+  const Point b = complex.point(i);
+  const VertexIndex j = find(i + 1, [&](Point p) { return !are_collinear(a, b, p); });
+  if (j == n) throw InputError("all points lie on one line");
+  const Point c = complex.point(j);
+  const VertexIndex k = find(j + 1, [&](Point p) { return orient3d(a, b, c, p) != 0; });
+  if (k == n) throw InputError("all points lie in one plane: there is no volume to grid");
+  return {0, i, j, k};
 }
+
+class Builder {
+ public:
+  Builder(TetComplex& complex, Context& context) : c_(complex), context_(context) {}
+
+  std::vector<std::pair<VertexIndex, VertexIndex>> run(KernelCounts& counts) {
+    renumber_along_curve();
+    const auto duplicates = find_duplicates();
+    const auto [a, b, c, d] = find_first_tet(c_);
+    DelaunayKernel kernel(c_);
+    kernel.start(a, b, c, d);
+    std::vector<VertexIndex> vertices;
+    for (VertexIndex v = 0; v < original_.size(); ++v)
+      if (!is_duplicate_[v] && c_.vertex_tet[v] == kNoIndex) vertices.push_back(v);
+    insert_batch(c_, vertices, {}, kernel.last_tet, counts, context_);
+    restore_numbers();
+    return duplicates;
+  }
+
+ private:
+  void renumber_along_curve() {
+    std::vector<Point> points(c_.num_vertices());
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] = c_.vertex[v].point();
+    original_ = hilbert_order(points, context_.threads);
+    points = {};
+    FlatArray<TetVertex> sorted;
+    sorted.resize(original_.size());
+    parallel_ranges(context_.threads, original_.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) sorted[i] = c_.vertex[original_[i]];
+    });
+    c_.vertex.swap(sorted);
+    is_duplicate_.assign(original_.size(), 0);
+  }
+
+  /// Equal points are neighbours in the order, the lowest original number first.
+  std::vector<std::pair<VertexIndex, VertexIndex>> find_duplicates() {
+    std::vector<std::pair<VertexIndex, VertexIndex>> duplicates;
+    for (std::size_t i = 1, first = 0; i < original_.size(); ++i) {
+      if (!(c_.vertex[i].point() == c_.vertex[first].point())) {
+        first = i;
+        continue;
+      }
+      duplicates.push_back({original_[i], original_[first]});
+      is_duplicate_[i] = 1;
+    }
+    std::sort(duplicates.begin(), duplicates.end());
+    return duplicates;
+  }
+
+  void restore_numbers() {
+    FlatArray<TetVertex> vertices;
+    FlatArray<TetIndex> tets;
+    vertices.resize(original_.size());
+    tets.resize(original_.size());
+    parallel_ranges(context_.threads, original_.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        vertices[original_[i]] = c_.vertex[i];
+        tets[original_[i]] = c_.vertex_tet[i];
+      }
+    });
+    c_.vertex.swap(vertices);
+    c_.vertex_tet.swap(tets);
+    parallel_ranges(context_.threads, c_.node.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        if (c_.node[i] < original_.size()) c_.node[i] = original_[c_.node[i]];
+    });
+  }
+
+  TetComplex& c_;
+  Context& context_;
+  std::vector<VertexIndex> original_;  ///< by place along the curve
+  std::vector<std::uint8_t> is_duplicate_;
+};
 
 }  // namespace
 
-std::vector<std::pair<VertexIndex, VertexIndex>> build_delaunay(TetComplex& complex, DelaunayKernel& kernel,
-                                                                Context& context) {
-  std::vector<VertexIndex> order = insertion_order(complex);
-  find_first_tet(complex, order);
-  kernel.start(order[0], order[1], order[2], order[3]);
-  std::vector<std::pair<VertexIndex, VertexIndex>> duplicates;
-  for (std::size_t i = 4; i < order.size(); ++i) {
-    if (kernel.insert(order[i], kernel.last_tet) == DelaunayKernel::Insert::duplicate)
-      duplicates.push_back({order[i], kernel.duplicate_of});
-    if (i % kPointsPerCancelCheck == 0) context.progress("tetrahedralize", i, order.size(), "points");
-  }
-  std::sort(duplicates.begin(), duplicates.end());
+std::vector<std::pair<VertexIndex, VertexIndex>> build_delaunay(TetComplex& complex, Context& context,
+                                                                KernelCounts* counts) {
+  KernelCounts done;
+  auto duplicates = Builder(complex, context).run(done);
+  if (counts) *counts = done;
   return duplicates;
-}
-
-std::vector<std::pair<VertexIndex, VertexIndex>> build_delaunay(TetComplex& complex, Context& context) {
-  DelaunayKernel kernel(complex);
-  return build_delaunay(complex, kernel, context);
 }
 
 }  // namespace delfront

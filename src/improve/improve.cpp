@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "improve/operations.hpp"
+#include "improve/sharpness.hpp"
 
 namespace delfront {
 
@@ -16,25 +17,30 @@ namespace {
 /// Swaps and smoothing aim this much higher than the goal, since they cost little; points are removed and added for
 /// the goal alone.
 constexpr double kStretch = 1.7;
-constexpr double kMaxWorkAngle = 32;  // degrees; a regular tet has 70, but few vertices can have only those
-constexpr double kCrowded = 0.4;      // of the wanted size: nearer neighbours than this are too many
-constexpr double kEnough = 1.5;       // times the quality worked for: good enough to look no further
-constexpr double kLeastScan = 1e-3;   // quality from which the search for the smallest angle starts
+constexpr double kMaxWorkAngle = 32;   // degrees; a regular tet has 70, but few vertices can have only those
+constexpr double kCrowded = 0.4;       // of the wanted size: nearer neighbours than this are too many
+constexpr double kEnough = 1.5;        // times the quality worked for: good enough to look no further
+constexpr double kLeastScan = 1e-3;    // quality from which the search for the smallest angle starts
+constexpr double kFlat = 1;            // degrees: a cell below it is urgent ...
+constexpr double kUnexplained = 1e-2;  // ... if its quality is below that of the boundary there by this factor
+constexpr double kExplained = 0.25;    // of the boundary's quality: no more can be expected
 constexpr std::size_t kScansBetweenChecks = 1 << 16;
 
 /// One kind of operation, over the list of bad tets, in each pass from `first_pass` on.
 ///
-/// A surface of needles leaves tets that nothing can mend: where more than `free_tries` and kTriesForOne times the
-/// successes have been made, the sweep ends, and the next pass resumes there.
+/// A surface of needles leaves tets that nothing can mend. Where more than `free_tries` and `tries_for_one` times
+/// the successes have been made, the sweep goes on with those alone that the boundary does not explain, from then on in
+/// all passes; where that is too much again, it ends, and the next pass resumes there.
 struct Sweep {
   std::size_t first_pass;
   std::size_t free_tries;
   std::size_t between_checks;  ///< tets between two cancellation points, so that these are some milliseconds apart
+  std::size_t tries_for_one;   ///< fewer successes than one in so many tries are not worth the time
   double bound = 0;            ///< only tets whose quality is below this
   TetIndex resume = 0;
   bool was_cut = false;
+  bool skips_explained = false;
 };
-constexpr std::size_t kTriesForOne = 50;
 constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max() / 2;
 
 class Improver {
@@ -59,6 +65,8 @@ class Improver {
   std::array<VertexIndex, 4> nodes(TetIndex t) const {
     return {c_.node[4 * t], c_.node[4 * t + 1], c_.node[4 * t + 2], c_.node[4 * t + 3]};
   }
+  bool is_explained(TetIndex t, double share) const;
+  bool is_urgent(TetIndex t) const;
   bool insert(TetIndex t);
   template <class Operation>
   void run_sweep(Sweep& sweep, Operation operation);
@@ -79,12 +87,13 @@ class Improver {
   double goal_ = 0;    ///< quality below which points are removed and added
   double work_ = 0;    ///< quality below which a tet is worked on
   double enough_ = 0;  ///< quality at which an operation looks no further
-  Sweep thin_out_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024};
-  Sweep swap_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024};
-  Sweep smooth_{.first_pass = 1, .free_tries = 10000, .between_checks = 64};
-  Sweep contract_{.first_pass = 2, .free_tries = 10000, .between_checks = 512};
-  Sweep insert_{.first_pass = 2, .free_tries = 1000, .between_checks = 16};
+  Sweep thin_out_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024, .tries_for_one = 50};
+  Sweep swap_{.first_pass = 1, .free_tries = kUnlimited, .between_checks = 1024, .tries_for_one = 50};
+  Sweep smooth_{.first_pass = 1, .free_tries = 10000, .between_checks = 64, .tries_for_one = 50};
+  Sweep contract_{.first_pass = 2, .free_tries = 10000, .between_checks = 512, .tries_for_one = 50};
+  Sweep insert_{.first_pass = 2, .free_tries = 1000, .between_checks = 16, .tries_for_one = 12};
   std::vector<TetIndex> bad_, next_;         ///< in slot order
+  std::vector<float> sharpness_;             ///< by vertex, those added by improvement left out
   std::vector<std::uint32_t> vertex_pass_;   ///< the last pass that changed a tet of this vertex
   std::vector<std::uint32_t> vertex_sweep_;  ///< the last sweep that visited this vertex
   std::uint32_t sweep_ = 0;
@@ -190,8 +199,21 @@ bool Improver::thin_out(TetIndex t) {
   return false;
 }
 
+/// Whether t is about as good as the boundary's own angles at its vertices: at least `share` of their quality.
+bool Improver::is_explained(TetIndex t, double share) const {
+  double sharpest = 1;
+  for (const VertexIndex v : nodes(t))
+    if (v < sharpness_.size()) sharpest = std::min(sharpest, static_cast<double>(sharpness_[v]));
+  return operations_.quality(t) >= share * sharpest;
+}
+
+/// A cell of almost no volume that no sharp place of the boundary explains.
+bool Improver::is_urgent(TetIndex t) const {
+  return is_below(t, quality_of_angle(kFlat)) && !is_explained(t, kUnexplained);
+}
+
 bool Improver::insert(TetIndex t) {
-  if (!is_changed(operations_.insert(t, goal_, enough_))) return false;
+  if (!is_changed(operations_.insert(t, goal_, enough_, is_urgent(t)))) return false;
   ++report_.points_added;
   return true;
 }
@@ -213,10 +235,16 @@ void Improver::run_sweep(Sweep& sweep, Operation operation) {
     if (!is_bad(t)) continue;
     next_.push_back(t);
     if (sweep.was_cut || !is_below(t, sweep.bound) || (!takes_stale && is_stale(t))) continue;
+    if (sweep.skips_explained && is_explained(t, kExplained)) continue;
     ++tried;
     if (operation(t)) ++done;
-    sweep.was_cut = tried > sweep.free_tries + kTriesForOne * done;
-    if (sweep.was_cut) sweep.resume = t;
+    if (tried <= sweep.free_tries + sweep.tries_for_one * done) continue;
+    if (sweep.skips_explained) {
+      sweep.was_cut = true;
+      sweep.resume = t;
+    }
+    sweep.skips_explained = true;
+    tried = 0;
   }
   std::sort(next_.begin(), next_.end());
   next_.erase(std::unique(next_.begin(), next_.end()), next_.end());
@@ -267,6 +295,7 @@ ImproveReport Improver::run() {
   swap_.bound = smooth_.bound = work_;
   vertex_pass_.assign(c_.num_vertices(), 0);
   report_.min_dihedral_before_deg = measure_least_dihedral();
+  sharpness_ = measure_sharpness(c_);
   const int max_passes = options_.enabled ? options_.max_passes : 0;
   for (int pass = 0; pass < max_passes && !bad_.empty(); ++pass) {
     const std::size_t before = num_changes();

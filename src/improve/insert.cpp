@@ -71,6 +71,7 @@ void LocalOperations::grow_cavity(const Point& p, double enough) {
 }
 
 bool LocalOperations::is_far_from_hole(const Point& p, double bound, double of_least) const {
+  if (is_urgent_) return true;
   const double share = of_least * (bound < quality_of_angle(5) ? kShortestAtWorst : kShortest);
   double h = 0;
   for (unsigned i = 0; i < 4; ++i) h += 0.25 * c_.vertex[c_.node[4 * cavity_[0] + i]].h;
@@ -147,31 +148,62 @@ bool LocalOperations::try_point(Point p, double bound, double enough) {
   return false;
 }
 
-bool LocalOperations::insert(TetIndex t, double goal, double enough) {
+/// The mean unit normal, into the cavity, of the constrained faces of its hole.
+Point LocalOperations::measure_inwards() const {
+  Point sum;
+  for (const HoleFace& face : hole_) {
+    if (!c_.is_constrained(face.ref)) continue;
+    const auto n = c_.face_nodes(face.ref);
+    const Point normal = cross(c_.point(n[1]) - c_.point(n[0]), c_.point(n[2]) - c_.point(n[0]));
+    if (const double l = length(normal); l > 0) sum = sum + normal / l;
+  }
+  const double l = length(sum);
+  return l > 0 ? sum / l : sum;
+}
+
+/// The midpoint of edge e of t, with the edge's whole ring as the first cavity. Where that lies in a flat part of the
+/// boundary and the tet is urgent: from places off it, since no cavity can be grown from a place in it.
+bool LocalOperations::insert_at_edge(TetIndex t, const std::uint8_t* e, double bound, double enough) {
+  const VertexIndex a = c_.node[4 * t + e[0]], b = c_.node[4 * t + e[1]];
+  const Point middle = 0.5 * (c_.point(a) + c_.point(b));
+  const double reach = distance(c_.point(a), c_.point(b));
+  c_.edge_ring(t, a, b, star_);
+  for (const TetIndex r : star_) {
+    if (c_.is_ghost(r) || c_.region[r] != c_.region[t]) return false;
+    for (unsigned f = 0; f < 4; ++f) {
+      const VertexIndex opposite = c_.node[4 * r + f];
+      if (c_.is_constrained(4 * r + f) && opposite != a && opposite != b) return false;
+    }
+  }
+  const std::vector<TetIndex> ring = star_;
+  for (const double away : {0.0, 0.1, 0.01, 1e-4}) {
+    for (const TetIndex r : ring) add_to_cavity(r, middle);
+    const Point inwards = away > 0 ? measure_inwards() : Point{};
+    const Point p = middle + (away * reach) * inwards;
+    if (away > 0) rebuild_hole(cavity_.size(), p);
+    if (try_point(p, bound, enough)) return true;
+    if (!is_urgent_) return false;
+  }
+  return false;
+}
+
+bool LocalOperations::insert(TetIndex t, double goal, double enough, bool is_urgent) {
   const double now = quality(t);
   const double bound = std::max(kGain * now, std::min(goal, kInsertionGain * now));
   const std::uint32_t* n = &c_.node[4 * t];
   const Point corner[4] = {c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), c_.point(n[3])};
   const Point centroid = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
+  is_urgent_ = is_urgent;
   clear_cavity();
   add_to_cavity(t, centroid);
   if (try_point(centroid, bound, enough)) return true;
-  // Then the longest edge's midpoint, with the edge's whole ring as the first cavity.
-  const std::uint8_t* longest = kEdgeNodes[0];
-  for (const auto& e : kEdgeNodes)
-    if (squared_length(corner[e[0]] - corner[e[1]]) > squared_length(corner[longest[0]] - corner[longest[1]]))
-      longest = e;
-  const Point middle = 0.5 * (corner[longest[0]] + corner[longest[1]]);
-  c_.edge_ring(t, n[longest[0]], n[longest[1]], star_);
-  for (const TetIndex r : star_) {
-    if (c_.is_ghost(r) || c_.region[r] != c_.region[t]) return false;
-    for (unsigned f = 0; f < 4; ++f) {
-      const VertexIndex opposite = c_.node[4 * r + f];
-      if (c_.is_constrained(4 * r + f) && opposite != n[longest[0]] && opposite != n[longest[1]]) return false;
-    }
-  }
-  for (const TetIndex r : star_) add_to_cavity(r, middle);
-  return try_point(middle, bound, enough);
+  double length[6];
+  std::array<std::uint8_t, 6> order{0, 1, 2, 3, 4, 5};
+  for (unsigned e = 0; e < 6; ++e) length[e] = squared_length(corner[kEdgeNodes[e][0]] - corner[kEdgeNodes[e][1]]);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint8_t a, std::uint8_t b) { return length[a] > length[b]; });
+  const std::size_t tries = is_urgent ? order.size() : 1;  // the longest edge is the one that most often helps
+  return std::any_of(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(tries),
+                     [&](std::uint8_t e) { return insert_at_edge(t, kEdgeNodes[e], bound, enough); });
 }
 
 }  // namespace delfront

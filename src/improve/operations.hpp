@@ -53,8 +53,8 @@ class LocalOperations {
 
   /// @brief Put a point near t into a cavity grown and a place chosen for the best worst tet, which must reach
   /// `goal` or be clearly better than t; edges stay above kShortest h. Free vertices inside of the cavity are dropped
-  /// with it.
-  bool insert(TetIndex t, double goal, double enough);
+  /// with it. `is_urgent`: any room will do, and all edges are tried.
+  bool insert(TetIndex t, double goal, double enough, bool is_urgent = false);
 
   std::size_t num_dropped = 0;  ///< vertices lost in cavities of insert()
 
@@ -68,6 +68,8 @@ class LocalOperations {
   void add_to_cavity(TetIndex t, const Point& p);
   void grow_cavity(const Point& p, double enough);
   void rebuild_hole(std::size_t num_tets, const Point& p);
+  Point measure_inwards() const;
+  bool insert_at_edge(TetIndex t, const std::uint8_t* e, double bound, double enough);
   bool try_point(Point p, double bound, double enough);
   bool is_far_from_hole(const Point& p, double bound, double of_least) const;
   bool keeps_boundary_vertices();
@@ -85,6 +87,7 @@ class LocalOperations {
   std::vector<VertexIndex> candidates_;
   std::vector<TetIndex> cavity_;
   std::vector<HoleFace> hole_;
+  bool is_urgent_ = false;  ///< of the insertion that is being tried
 };
 
 }  // namespace delfront

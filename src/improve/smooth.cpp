@@ -10,10 +10,12 @@ namespace {
 
 constexpr int kMaxSteps = 16;
 constexpr int kMaxHalvings = 6;
-constexpr double kFirstStep = 0.15;      // of the mean distance to the corners
-constexpr double kFirstActive = 0.5;     // tets up to (1 + this) of the worst count as active ...
-constexpr double kLastActive = 0.03;     // ... narrowed down to this before giving up
-constexpr double kLeastGain = 1 + 1e-3;  // a step that gains less ends the search
+constexpr int kMaxHalvingsWhereFlat = 24;  // there may be little room, but any of it helps
+constexpr double kFlat = 1e-9;             // squared sine of 0.002 degrees
+constexpr double kFirstStep = 0.15;        // of the mean distance to the corners
+constexpr double kFirstActive = 0.5;       // tets up to (1 + this) of the worst count as active ...
+constexpr double kLastActive = 0.03;       // ... narrowed down to this before giving up
+constexpr double kLeastGain = 1 + 1e-3;    // a step that gains less ends the search
 constexpr std::size_t kMaxActive = 12;
 
 /// The shortest vector of the convex hull of the gradients: a direction in which all of them rise, if there is one.
@@ -74,7 +76,8 @@ double optimise_point(const FaceBatch& faces, Point& p, double enough, SmoothScr
     double best = worst;
     Point best_at = p;
     double tried = step;
-    for (int half = 0; norm > 0 && half < kMaxHalvings; ++half, tried *= 0.5) {
+    const int halvings = worst < kFlat ? kMaxHalvingsWhereFlat : kMaxHalvings;
+    for (int half = 0; norm > 0 && half < halvings; ++half, tried *= 0.5) {
       const Point at = p + (tried / norm) * ascent;
       const double there = faces.worst(at, best);
       if (there > best) {

@@ -26,6 +26,9 @@ Mesh read_obj(std::string_view bytes, const std::string& path, Context& context)
 Mesh read_ply(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_off(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_poly(std::string_view bytes, const std::string& path, Context& context);
+/// @brief Triangle's .poly in the plane; read_poly hands such files on.
+Mesh read_planar_poly(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_dat(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_vtu(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_vtp(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_msh(std::string_view bytes, const std::string& path, Context& context);

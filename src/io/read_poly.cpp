@@ -129,6 +129,13 @@ class PolyReader {
 }  // namespace
 
 Mesh read_poly(std::string_view bytes, const std::string& path, Context& context) {
+  Cursor head(bytes, path, "#");
+  if (!head.next().empty() && head.next_on_line() == "2" && head.left() > 0) {
+    head.move_to(0);
+    if (head.count("number of points", 6) == 0)
+      head.fail("0 points: they are in a .node file, which is not read; put them into this file");
+    return read_planar_poly(bytes, path, context);
+  }
   return PolyReader(bytes, path, context).read();
 }
 

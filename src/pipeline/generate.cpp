@@ -84,7 +84,7 @@ Outcome generate(Model model, const Options& options, Context& context) {
       tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
   const auto size = build_size_field(grid.complex, options.size, context);
   set_vertex_sizes(grid.complex, *size);
-  report.refine = refine_complex(grid.complex, *size, context);
+  report.refine = refine_complex(grid.complex, *size, options.volume, context);
   if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
   outcome.mesh = to_mesh(grid, model);
   grid = {};

@@ -195,7 +195,7 @@ OptionRow enclose_size_row() {
                 Takes::length,
                 "",
                 "LENGTH",
-                "sphere: its radius; box: half its side",
+                "sphere, circle: its radius; box: half its side",
                 kLengthAllowed,
                 [](Options& o, const JobValue& v) { o.domain.enclose.size = as_length(v); },
                 [](const Options& o) {
@@ -302,7 +302,7 @@ std::vector<OptionRow> build_table() {
       "improve (write nothing), write",
       [](auto& o) -> auto& { return o.stop_after; }, kStages));
   add(texts_row(
-      "input.files", "", "", "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …",
+      "input.files", "", "", "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …; or lines in the plane: DAT, POLY, …",
       [](auto& o) -> auto& { return o.input.files; }));
   add(text_row(
       "input.units", "--units", "UNIT", "unit of the coordinates, where lengths in m, mm, in, ft are used",
@@ -312,7 +312,7 @@ std::vector<OptionRow> build_table() {
       "degrees from 0 to 180", 0, 180, [](auto& o) -> auto& { return o.input.feature_angle; }));
   add(keep_row());
   add(text_row("domain.enclose.shape", "", "", "outer boundary made around the input, for external flow",
-               [](auto& o) -> auto& { return o.domain.enclose.shape; }, {"none", "box", "sphere"}));
+               [](auto& o) -> auto& { return o.domain.enclose.shape; }, {"none", "box", "sphere", "circle"}));
   add(enclose_size_row());
   add(corners_row());
   add(text_row(
@@ -328,8 +328,17 @@ std::vector<OptionRow> build_table() {
       "size.hmax", "--hmax,--clmax", "no cell side asked for above this",
       [](auto& o) -> auto& { return o.size.hmax; }));
   add(growth_row());
+  add(text_row("planar.boundary", "--boundary", "keep|split",
+               "grids in the plane: keep the given boundary points and no others, or split segments by size",
+               [](auto& o) -> auto& { return o.planar.boundary; }, {"keep", "split"}));
+  add(number_row(
+      "planar.min_angle", "", "", "grids in the plane: smallest angle to work towards", "degrees from 0 to 40", 0, 40,
+      [](auto& o) -> auto& { return o.planar.min_angle; }));
   add(text_row("volume.method", "", "", "how the volume is gridded; none: the surface only",
                [](auto& o) -> auto& { return o.volume.method; }, {"delaunay", "none"}));
+  add(boolean_row(
+      "volume.core", "a regular lattice in the middle, where sizes are largest and the boundary is far",
+      [](auto& o) -> auto& { return o.volume.core; }));
   add(boolean_row(
       "improve.enabled", "switch faces and edges and move points until the goals are met",
       [](auto& o) -> auto& { return o.improve.enabled; }));
@@ -412,7 +421,7 @@ const std::vector<BoundaryRow>& boundary_table() {
   return table;
 }
 
-/// "sphere:20c", "box:10c", "box:xmin,ymin,zmin,xmax,ymax,zmax", "none".
+/// "sphere:20c", "circle:20c", "box:10c", "box:xmin,ymin,zmin,xmax,ymax,zmax", "none".
 static void set_farfield(Options& options, const std::string& text) {
   EncloseOptions& enclose = options.domain.enclose;
   const std::size_t colon = text.find(':');
@@ -420,7 +429,7 @@ static void set_farfield(Options& options, const std::string& text) {
   const std::string size = colon == std::string::npos ? "" : text.substr(colon + 1);
   const auto bad = [&](const std::string& why) {
     return UsageError(
-        fmt::format("--farfield {}: {}; write sphere:20c (radius), box:10c (half side) or "
+        fmt::format("--farfield {}: {}; write sphere:20c or, in 2-D, circle:20c (radius), box:10c (half side) or "
                     "box:xmin,ymin,zmin,xmax,ymax,zmax",
                     text, why));
   };
@@ -429,8 +438,8 @@ static void set_farfield(Options& options, const std::string& text) {
     enclose.h.reset();  // of the far field that the job file asks for
     return;
   }
-  if (shape != "sphere" && shape != "box")
-    throw bad("unknown shape '" + shape + "'" + did_you_mean(shape, {"sphere", "box", "none"}));
+  if (shape != "sphere" && shape != "box" && shape != "circle")
+    throw bad("unknown shape '" + shape + "'" + did_you_mean(shape, {"sphere", "circle", "box", "none"}));
   if (size.empty()) throw bad("the size is missing");
   enclose.shape = shape;
   enclose.corners.reset();
@@ -447,7 +456,7 @@ static void set_farfield(Options& options, const std::string& text) {
 const std::vector<Shorthand>& shorthand_table() {
   static const std::vector<Shorthand> table = {
       {"--farfield", "SHAPE:SIZE",
-       "outer boundary around the body: sphere:20c, box:10c (c = the body's longest side), or box:xmin,…,zmax; patches "
+       "outer boundary around the body: sphere:20c, circle:20c (2-D), box:10c (c = the body's longest side), or box:xmin,…,zmax; patches "
        "of "
        "the input get the kind wall unless they have one",
        true, set_farfield},

@@ -78,8 +78,17 @@ Json to_json(const RecoveryReport& r) {
           {"steiner_moved", r.steiner_moved}, {"steiner_left", r.steiner_left},   {"left", to_json(r.left, 1000)}};
 }
 
+Json to_json(const KernelCounts& k) {
+  return {{"points", k.points},           {"walk_steps", k.walk_steps},     {"insphere_tests", k.insphere_tests},
+          {"exact_tests", k.exact_tests}, {"tets_deleted", k.tets_deleted}, {"tets_created", k.tets_created}};
+}
+
 Json to_json(const RefineReport& r) {
-  return {{"points_inserted", r.points_inserted}, {"candidates", r.candidates}, {"rounds", r.rounds}};
+  return {{"points_inserted", r.points_inserted},
+          {"points_in_core", r.points_in_core},
+          {"candidates", r.candidates},
+          {"rounds", r.rounds},
+          {"kernel", to_json(r.kernel)}};
 }
 
 Json to_json(const ImproveReport& r) {

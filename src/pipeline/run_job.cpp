@@ -13,6 +13,7 @@
 #include "delfront/job.hpp"
 #include "geometry/enclose.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/planar_job.hpp"
 #include "pipeline/quantities.hpp"
 #include "pipeline/report_json.hpp"
 
@@ -56,9 +57,25 @@ bool has_far_field(const Options& options) { return options.domain.enclose.shape
 
 bool writes_grid(const Options& options) { return options.stop_after != "geometry" && options.stop_after != "improve"; }
 
-/// Malformed gates and unknown measures are refused before the work: tried on a grid of one cell.
+/// The gates' measures are those of volume cells, or of triangles.
+bool are_planar_gates(const std::string& gates) {
+  Mesh cell;
+  cell.dimension = 2;
+  cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  cell.block(CellType::triangle).vertices = {VertexId(0), VertexId(1), VertexId(2)};
+  cell.block(CellType::triangle).group = {cell.add_group(2, "cell")};
+  Context quiet;
+  try {
+    failed_gates(measure_quality(cell, quiet), gates);
+    return true;
+  } catch (const UsageError&) {
+    return false;
+  }
+}
+
+/// Malformed gates and unknown measures are refused before the work: tried on grids of one cell.
 void check_gates(const std::string& gates) {
-  if (gates.empty()) return;
+  if (gates.empty() || are_planar_gates(gates)) return;
   Mesh cell;
   cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   cell.block(CellType::tetrahedron).vertices = {VertexId(0), VertexId(1), VertexId(2), VertexId(3)};
@@ -246,16 +263,7 @@ Outcome generate_in_far_field(const Run& run, Model model) {
   return outcome;
 }
 
-void work(Run& run) {
-  check_floating_point_mode();
-  check_before_work(run.options);
-  read_inputs(run);
-  Model model = make_model(run);
-  if (run.options.stop_after == "geometry") return stop_at_surface(run, std::move(model));
-  if (run.options.stop_after == "surface" || run.options.volume.method == "none")
-    return stop_at_surface(run, std::move(model));
-  if (run.options.stop_after == "volume") run.options.improve.enabled = false;
-  Outcome outcome = generate_in_far_field(run, std::move(model));
+void finish(Run& run, Outcome outcome) {
   run.result.report = std::move(outcome.report);
   run.result.mesh = std::move(outcome.mesh);
   run.context.check_cells(run.result.report.quality.num_cells);
@@ -267,6 +275,37 @@ void work(Run& run) {
   run.result.error = "the grid was written, but does not meet: " + run.result.failed_gates[0];
   for (std::size_t i = 1; i < run.result.failed_gates.size(); ++i)
     run.result.error += "; " + run.result.failed_gates[i];
+}
+
+/// Lines in the plane: the same steps, over curves instead of patches.
+void work_in_the_plane(Run& run) {
+  check_planar_outputs(run.options);
+  PlanarDomain domain = build_planar_domain(run.inputs, run.context);
+  Box box;
+  for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
+  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
+  resolve_lengths(run.options, run.result.scale);
+  const CurveId far_field = set_curves(domain, run.options, run.result.scale, run.context);
+  if (run.options.stop_after == "surface" || run.options.volume.method == "none") {
+    run.result.mesh = line_mesh(domain);
+    return write_outputs(run);
+  }
+  if (run.options.stop_after == "volume") run.options.improve.enabled = false;
+  Outcome outcome = generate_in_far_field(domain, far_field, run.options, run.context);
+  finish(run, std::move(outcome));
+}
+
+void work(Run& run) {
+  check_floating_point_mode();
+  check_before_work(run.options);
+  read_inputs(run);
+  if (is_planar_job(run.inputs)) return work_in_the_plane(run);
+  Model model = make_model(run);
+  if (run.options.stop_after == "geometry") return stop_at_surface(run, std::move(model));
+  if (run.options.stop_after == "surface" || run.options.volume.method == "none")
+    return stop_at_surface(run, std::move(model));
+  if (run.options.stop_after == "volume") run.options.improve.enabled = false;
+  finish(run, generate_in_far_field(run, std::move(model)));
 }
 
 std::string default_defects_path(const Options& options) {
@@ -282,7 +321,8 @@ void write_defects_file(Run& run) {
   JobResult& result = run.result;
   Mesh surface;
   try {
-    if (result.exit_code == ExitCode::bad_input && !run.inputs.empty() && result.report.surface.findings.empty()) {
+    if (result.exit_code == ExitCode::bad_input && !run.inputs.empty() && result.report.surface.findings.empty() &&
+        !is_planar_job(run.inputs)) {
       const Model model = build_model(run.inputs, quiet);
       surface = surface_mesh(model);
       result.report.surface = check_surface(model, quiet);

@@ -121,6 +121,7 @@ class BoundarySizeField final : public SizeField {
 
   void sizes(std::span<const Point> at, std::span<double> size) const override;
   double lower_bound(const Box& box) const override;
+  double largest() const override { return hmax_; }
 
  private:
   double clamped(double value) const { return std::clamp(value, hmin_, hmax_); }

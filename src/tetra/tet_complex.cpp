@@ -69,9 +69,43 @@ TetIndex TetComplex::new_tet() {
 }
 
 void TetComplex::kill_tet(TetIndex t) {
-  flag[t] = dead;
-  set_nodes(t, kNoIndex, kNoIndex, kNoIndex, kNoIndex);
+  bury_tet(t);
   free_.push_back(t);
+}
+
+std::vector<TetIndex> TetComplex::take_slots(std::size_t count) {
+  const std::size_t reused = std::min(count, free_.size());
+  std::vector<TetIndex> slots(free_.end() - static_cast<std::ptrdiff_t>(reused), free_.end());
+  free_.resize(free_.size() - reused);
+  const std::size_t first = num_slots(), total = first + count - reused;
+  DELFRONT_CHECK(total < (std::size_t{1} << 30));
+  flag.resize(total, dead);
+  node.resize(4 * total);
+  neigh.resize(4 * total);
+  region.resize(total);
+  for (std::size_t t = total; t > first; --t) slots.push_back(static_cast<TetIndex>(t - 1));
+  return slots;
+}
+
+void TetComplex::give_slots(std::span<const TetIndex> slots) {
+  for (const TetIndex t : slots) kill_tet(t);
+}
+
+std::vector<VertexIndex> TetComplex::take_vertices(std::size_t count) {
+  const std::size_t reused = std::min(count, free_vertices_.size());
+  std::vector<VertexIndex> numbers(free_vertices_.end() - static_cast<std::ptrdiff_t>(reused), free_vertices_.end());
+  free_vertices_.resize(free_vertices_.size() - reused);
+  const std::size_t first = num_vertices(), total = first + count - reused;
+  vertex.resize(total);
+  vertex_tet.resize(total, kNoIndex);
+  on_boundary.resize(total, 0);
+  for (std::size_t v = total; v > first; --v) numbers.push_back(static_cast<VertexIndex>(v - 1));
+  return numbers;
+}
+
+void TetComplex::give_vertices(std::span<const VertexIndex> numbers) {
+  for (const VertexIndex v : numbers) set_vertex(v, {}, 0);
+  free_vertices_.insert(free_vertices_.end(), numbers.begin(), numbers.end());
 }
 
 VertexIndex TetComplex::add_vertex(Point p, double h) {

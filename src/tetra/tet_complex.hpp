@@ -2,10 +2,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "base/flat_array.hpp"
 #include "delfront/point.hpp"
 #include "predicates/predicates.hpp"
 
@@ -56,13 +58,13 @@ class TetComplex {
     in_scan = 1 << 8,  ///< scratch of star, find_edge, find_face and replace alone
   };
 
-  std::vector<TetVertex> vertex;
-  std::vector<std::uint32_t> node;          ///< 4 a tet
-  std::vector<FaceRef> neigh;               ///< 4 a tet
-  mutable std::vector<std::uint16_t> flag;  ///< 1 a tet; mutable: const searches mark with in_scan and clear it
-  std::vector<std::uint32_t> region;        ///< 1 a tet: the colour of its region; kOutside for what is not gridded
-  std::vector<TetIndex> vertex_tet;         ///< one live tet of each vertex, or kNoIndex
-  std::vector<std::uint8_t> on_boundary;  ///< 1 a vertex: 1 where it is a vertex of the given boundary and may not move
+  FlatArray<TetVertex> vertex;
+  FlatArray<std::uint32_t> node;          ///< 4 a tet
+  FlatArray<FaceRef> neigh;               ///< 4 a tet
+  mutable FlatArray<std::uint16_t> flag;  ///< 1 a tet; mutable: const searches mark with in_scan and clear it
+  FlatArray<std::uint32_t> region;        ///< 1 a tet: the colour of its region; kOutside for what is not gridded
+  FlatArray<TetIndex> vertex_tet;         ///< one live tet of each vertex, or kNoIndex
+  FlatArray<std::uint8_t> on_boundary;  ///< 1 a vertex: 1 where it is a vertex of the given boundary and may not move
   /// Steiner points on boundary segments, held exactly until boundary recovery ends; empty afterwards.
   std::unordered_map<VertexIndex, ExactPoint> segment_points;
 
@@ -88,7 +90,20 @@ class TetComplex {
   /// @brief A slot for a new tet: reuses dead ones, last freed first. Its arrays are not cleared but for the flags.
   TetIndex new_tet();
   void kill_tet(TetIndex t);
+  /// @brief Take `count` dead slots out of the complex, for a thread to make tets of: give_slots() takes back the rest.
+  std::vector<TetIndex> take_slots(std::size_t count);
+  void give_slots(std::span<const TetIndex> slots);
+  /// @brief Mark a slot dead without taking it back.
+  void bury_tet(TetIndex t) {
+    flag[t] = dead;
+    set_nodes(t, kNoIndex, kNoIndex, kNoIndex, kNoIndex);
+  }
   VertexIndex add_vertex(Point p, double h);
+  /// @brief The same for vertices: take_vertices() gives numbers that no tet has, for set_vertex(); what is not used has
+  /// to be given back, and is taken again first.
+  std::vector<VertexIndex> take_vertices(std::size_t count);
+  void give_vertices(std::span<const VertexIndex> numbers);
+  void set_vertex(VertexIndex v, Point p, double h) { vertex[v] = {p.x, p.y, p.z, h}; }
   /// @pre no tet has it
   void remove_last_vertex() {
     vertex.pop_back();
@@ -162,6 +177,7 @@ class TetComplex {
   void collect_hole(const std::vector<TetIndex>& old_tets);
 
   std::vector<TetIndex> free_;
+  std::vector<VertexIndex> free_vertices_;
   std::vector<OpenFace> open_faces_;       ///< scratch of replace()
   std::vector<std::uint32_t> face_table_;  ///< scratch of replace(): hash table of indices into open_faces_
   std::size_t num_open_ = 0;

@@ -15,6 +15,7 @@
 #include "volume/facets.hpp"
 #include "volume/regions.hpp"
 #include "volume/segments.hpp"
+#include "volume/thin_out.hpp"
 #include "volume/unsplit.hpp"
 
 namespace delfront {
@@ -150,7 +151,7 @@ TetComplex recover_boundary(const Model& model, Segments& segments, std::vector<
   for (int restart = 0; restart < kMaxRestarts; ++restart) {
     TetComplex complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
-    build_delaunay(complex, kernel, context);
+    build_delaunay(complex, context);
     insert_chains(complex, kernel, model, segments);
     if (restart >= kMaxRestartsWithFlips) recover_segments(complex, kernel, model, segments, context);
     const RequiredEdges required(segments);
@@ -246,6 +247,7 @@ BoundaryGrid try_boundary(const Model& model, const std::array<double, 3>& facto
   unsplit_boundary(grid.complex, segments, report, context);
   const RequiredEdges none{Segments{}};
   EdgeFlips(grid.complex, none).restore_delaunay(context);
+  if (thin_out(grid.complex, context) > 0) EdgeFlips(grid.complex, none).restore_delaunay(context);
   if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
   warn_of_split(grid, report, context);
   return grid;

@@ -3,6 +3,7 @@
 #include "delaunay/delaunay.hpp"
 #include "delfront/context.hpp"
 #include "delfront/generate.hpp"
+#include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
 #include "tetra/tet_complex.hpp"
 
@@ -13,6 +14,7 @@ namespace delfront {
 /// Rounds without a global queue: every fresh tet proposes at most one point, proposals are filtered, sorted along
 /// the Hilbert curve and inserted with the proposing tet as hint. Boundary faces and vertices stay.
 /// @pre, @post complex.find_defect() is empty
-RefineReport refine_complex(TetComplex& complex, const SizeField& size, Context& context);
+RefineReport refine_complex(TetComplex& complex, const SizeField& size, const VolumeOptions& options,
+                            Context& context);
 
 }  // namespace delfront

@@ -13,6 +13,7 @@
 
 #include "volume/edge_flips.hpp"
 #include "volume/facets.hpp"
+#include "volume/thin_out.hpp"
 #include "volume/visible_point.hpp"
 
 namespace delfront {
@@ -20,6 +21,10 @@ namespace delfront {
 namespace {
 
 constexpr int kMaxPasses = 20;
+constexpr double kFlat = 1e-7;  ///< mean ratio of a tet that is flat to rounding: a place to avoid as long as possible
+constexpr int kMaxGrowth = 60;  ///< tets that a sector takes in beyond the star of its point
+constexpr int kLookAheads = 6;  ///< places on which walls in the way are looked for, tried in turn:
+constexpr double kCloser = 1. / 8;  ///< of the sector's reach from its point inwards, and so on
 
 using Face = std::array<VertexIndex, 3>;
 
@@ -34,6 +39,7 @@ struct Sector {
   bool is_ghost = false;
   std::uint32_t region = TetComplex::kOutside;
   std::vector<Face> walls;                         ///< link faces and polygon triangles, normals inwards
+  std::vector<FaceRef> wall_ref;                   ///< of the link faces, which come first: of the sector's tet
   std::ptrdiff_t num_polygon_walls = 0;            ///< the last ones of them
   std::optional<Point> moved;                      ///< where its point goes; none where it is filled without one
   std::vector<std::array<VertexIndex, 4>> filled;  ///< then: how
@@ -43,6 +49,10 @@ class PointRemoval {
  public:
   PointRemoval(TetComplex& complex, const Segments& segments) : c_(complex), segments_(segments) {}
 
+  /// 1: take in tets beyond the star where nothing else helps; more: and take any place at all, and look elsewhere for
+  /// what is in the way.
+  int growth = 0;
+
   /// @return false where s has to stay
   bool remove(VertexIndex s) {
     s_ = s;
@@ -50,7 +60,8 @@ class PointRemoval {
     segments_.neighbours(s, ends_);
     if (!find_sectors() || !find_paths() || !triangulate_paths()) return false;
     for (Sector& sector : sectors_)
-      if (!sector.is_ghost && !place(sector) && !fill_without_point(sector)) return false;
+      if (!sector.is_ghost && !place(sector) && !fill_without_point(sector) && !(growth > 0 && grow(sector)))
+        return false;
     rebuild();
     return true;
   }
@@ -136,7 +147,8 @@ class PointRemoval {
     for (Sector& sector : sectors_) {
       for (const TetIndex t : sector.tets) {
         if (sector.is_ghost) continue;
-        sector.walls.push_back(c_.face_nodes(4 * t + static_cast<unsigned>(c_.local_index(t, s_))));
+        sector.wall_ref.push_back(4 * t + static_cast<unsigned>(c_.local_index(t, s_)));
+        sector.walls.push_back(c_.face_nodes(sector.wall_ref.back()));
       }
     }
     for (const Path& path : paths_)
@@ -190,7 +202,7 @@ class PointRemoval {
   /// Finds a place that sees all walls of a sector, from s inwards.
   bool place(Sector& sector) {
     const Point s = c_.point(s_);
-    Point centre, inwards;
+    Point centre;
     double reach = 0;
     std::vector<Wall> walls;
     for (const Face& f : sector.walls) {
@@ -200,14 +212,92 @@ class PointRemoval {
         reach = std::max(reach, distance(s, c_.point(v)));
       }
     }
+    sector.moved = find_visible_point(walls, s, {centre - s, inwards_of(sector)}, reach, growth > 1);
+    if (growth <= 1 && sector.moved && measure_worst_ratio(walls, *sector.moved) < kFlat) sector.moved.reset();
+    return sector.moved.has_value();
+  }
+
+  /// The direction from s that leads away from all the polygons of a sector.
+  Point inwards_of(const Sector& sector) const {
+    const Point s = c_.point(s_);
+    Point inwards;
     for (const Path& path : paths_)
       for (const int side : {0, 1})
         if (&sectors_[static_cast<std::size_t>(path.sector[side])] == &sector) {
           const Point n = cross(c_.point(path.vertices[0]) - s, c_.point(path.vertices[1]) - s);
           if (const double l = length(n); l > 0) inwards = inwards + (side == 0 ? 1 : -1) * n / l;
         }
-    sector.moved = find_visible_point(walls, s, {centre - s, inwards}, reach, true);
-    return sector.moved.has_value();
+    return inwards;
+  }
+
+  /// Takes in the tets behind walls that leave no place to see them from, until there is one.
+  bool grow(Sector& sector) {
+    for (int k = 0; k < kMaxGrowth; ++k) {
+      if (!take_tet_behind_nearest_wall(sector)) return false;
+      if (place(sector) && loses_no_given_vertex(sector)) return true;
+    }
+    return false;
+  }
+
+  bool take_tet_behind_nearest_wall(Sector& sector) {
+    const Point s = c_.point(s_), inwards = inwards_of(sector);
+    double reach = 0;
+    for (const Face& f : sector.walls) reach = std::max(reach, distance(s, c_.point(f[0])));
+    const double norm = length(inwards);
+    const Point look = norm > 0 ? s + (std::pow(kCloser, 1 + growth % kLookAheads) * reach / norm) * inwards : s;
+    std::size_t nearest = kNoIndex;
+    double least = 0;
+    for (std::size_t i = 0; i < sector.wall_ref.size(); ++i) {
+      if (!may_take(sector, c_.neigh[sector.wall_ref[i]])) continue;
+      const Face& f = sector.walls[i];
+      const Point n = cross(c_.point(f[1]) - c_.point(f[0]), c_.point(f[2]) - c_.point(f[0]));
+      const double l = length(n), ahead = l > 0 ? dot(n, look - c_.point(f[0])) / l : 0;
+      if (nearest == kNoIndex || ahead < least) nearest = i, least = ahead;
+    }
+    if (nearest == kNoIndex) return false;
+    take(sector, c_.neigh[sector.wall_ref[nearest]] >> 2);
+    return true;
+  }
+
+  bool may_take(const Sector& sector, FaceRef behind) const {
+    const TetIndex t = behind >> 2;
+    if (c_.is_constrained(behind) || c_.is_ghost(t) || c_.region[t] != sector.region) return false;
+    const int id = static_cast<int>(&sector - sectors_.data());
+    for (unsigned f = 0; f < 4; ++f) {
+      const auto found = sector_of_.find(c_.neigh[4 * t + f] >> 2);
+      if (found == sector_of_.end()) continue;
+      if (found->second != id || c_.is_constrained(4 * t + f)) return false;
+    }
+    return !sector_of_.contains(t);
+  }
+
+  void take(Sector& sector, TetIndex t) {
+    sector.tets.push_back(t);
+    sector_of_[t] = static_cast<int>(&sector - sectors_.data());
+    for (unsigned f = 0; f < 4; ++f) {
+      const FaceRef ref = 4 * t + f;
+      const auto shared = std::find(sector.wall_ref.begin(), sector.wall_ref.end(), c_.neigh[ref]);
+      if (shared != sector.wall_ref.end()) {
+        sector.walls.erase(sector.walls.begin() + (shared - sector.wall_ref.begin()));
+        sector.wall_ref.erase(shared);
+      } else {
+        sector.walls.insert(sector.walls.begin(), c_.face_nodes(ref));
+        sector.wall_ref.insert(sector.wall_ref.begin(), ref);
+      }
+    }
+  }
+
+  /// Only free vertices may vanish inside of a sector that has grown.
+  bool loses_no_given_vertex(const Sector& sector) const {
+    for (const TetIndex t : sector.tets)
+      for (unsigned k = 0; k < 4; ++k) {
+        const VertexIndex v = c_.node[4 * t + k];
+        if (v == s_ || (!c_.on_boundary[v] && !c_.segment_points.contains(v))) continue;
+        if (std::none_of(sector.walls.begin(), sector.walls.end(),
+                         [v](const Face& f) { return f[0] == v || f[1] == v || f[2] == v; }))
+          return false;
+      }
+    return true;
   }
 
   bool fill_without_point(Sector& sector) {
@@ -265,11 +355,20 @@ class PointRemoval {
   void fill(int id, std::map<std::pair<Face, int>, FaceRef>& polygon_faces) {
     const Sector& sector = sectors_[static_cast<std::size_t>(id)];
     std::map<Face, std::pair<FaceRef, bool>> open;
+    for (const TetIndex t : sector.tets)
+      for (unsigned f = 0; f < 4; ++f) {
+        const FaceRef ref = 4 * t + f;
+        if (c_.node[ref] != s_ && c_.has_vertex(t, s_)) continue;
+        const auto beyond = sector_of_.find(c_.neigh[ref] >> 2);
+        if (beyond != sector_of_.end() && beyond->second == id) continue;
+        open[sorted(c_.face_nodes(ref))] = {c_.neigh[ref], c_.is_constrained(ref)};
+      }
     for (const TetIndex t : sector.tets) {
-      const FaceRef ref = 4 * t + static_cast<unsigned>(c_.local_index(t, s_));
-      open[sorted(c_.face_nodes(ref))] = {c_.neigh[ref], c_.is_constrained(ref)};
+      if (!sector.is_ghost)
+        for (unsigned k = 0; k < 4; ++k)
+          if (c_.node[4 * t + k] != s_) c_.vertex_tet[c_.node[4 * t + k]] = kNoIndex;
+      c_.kill_tet(t);
     }
-    for (const TetIndex t : sector.tets) c_.kill_tet(t);
     std::map<Face, int> polygon_side;
     for (const Path& path : paths_)
       for (const int side : {0, 1})
@@ -314,7 +413,7 @@ void forget(Segments& segments, VertexIndex s) {
   std::erase_if(chain, [&](const Segments::Steiner& p) { return p.vertex == s; });
 }
 
-/// Moves the free vertices around s to where their own tets are best.
+/// Takes the free vertices around s away, or moves those that stay to where their own tets are best.
 void make_room(TetComplex& c, VertexIndex s) {
   std::vector<TetIndex> star, ball;
   c.star(s, star);
@@ -327,6 +426,7 @@ void make_room(TetComplex& c, VertexIndex s) {
   std::sort(around.begin(), around.end());
   around.erase(std::unique(around.begin(), around.end()), around.end());
   for (const VertexIndex v : around) {
+    if (contract_free_vertex(c, v, false)) continue;
     c.star(v, ball);
     std::vector<Wall> walls;
     Point centre;
@@ -393,6 +493,7 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
     const bool is_stuck = still.size() == left.size();
     left = std::move(still);
     if (!is_stuck) continue;
+    ++removal.growth;
     // Other tets around a point, or its neighbours at better places, may let it go.
     for (const VertexIndex s : left) make_room(complex, s);
     flips.restore_delaunay(context);

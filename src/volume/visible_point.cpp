@@ -13,18 +13,6 @@ constexpr int kHalvings = 60;  ///< of the first step: down to the resolution of
 constexpr int kClimbSteps = 30;
 constexpr int kRelaxations = 1000, kStepsPerMargin = 40;
 
-double worst_ratio(const std::vector<Wall>& walls, Point p) {
-  double worst = 1;
-  for (const Wall& w : walls) {
-    const Point a = w[0].approx, b = w[1].approx, c = w[2].approx;
-    const double volume = dot(cross(b - a, c - a), p - a) / 6;
-    const double sum = squared_length(b - a) + squared_length(c - a) + squared_length(p - a) + squared_length(c - b) +
-                       squared_length(p - b) + squared_length(p - c);
-    worst = std::min(worst, volume <= 0 || sum <= 0 ? 0 : 12 * std::cbrt(9 * volume * volume) / sum);
-  }
-  return worst;
-}
-
 bool sees_all(const std::vector<Wall>& walls, Point p) {
   const ExactPoint at = ExactPoint::explicit_point(p);
   return std::all_of(walls.begin(), walls.end(), [&](const Wall& w) { return orient3d(w[0], w[1], w[2], at) > 0; });
@@ -37,7 +25,7 @@ Point climb(const std::vector<Wall>& walls, Point p, double best, double step) {
       for (const double sign : {1.0, -1.0}) {
         Point next = p;
         next[axis] += sign * step;
-        const double ratio = worst_ratio(walls, next);
+        const double ratio = measure_worst_ratio(walls, next);
         if (ratio <= best || !sees_all(walls, next)) continue;
         p = next, best = ratio, moved = true;
       }
@@ -69,6 +57,18 @@ std::optional<Point> relax(const std::vector<Wall>& walls, Point p, double reach
 
 }  // namespace
 
+double measure_worst_ratio(const std::vector<Wall>& walls, Point p) {
+  double worst = 1;
+  for (const Wall& w : walls) {
+    const Point a = w[0].approx, b = w[1].approx, c = w[2].approx;
+    const double volume = dot(cross(b - a, c - a), p - a) / 6;
+    const double sum = squared_length(b - a) + squared_length(c - a) + squared_length(p - a) + squared_length(c - b) +
+                       squared_length(p - b) + squared_length(p - c);
+    worst = std::min(worst, volume <= 0 || sum <= 0 ? 0 : 12 * std::cbrt(9 * volume * volume) / sum);
+  }
+  return worst;
+}
+
 std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point start,
                                         const std::vector<Point>& directions, double reach, bool at_any_cost) {
   std::optional<Point> found;
@@ -80,12 +80,12 @@ std::optional<Point> find_visible_point(const std::vector<Wall>& walls, Point st
     for (int k = 0; k < kHalvings; ++k, step *= 0.5) {
       const Point p = start + (step / l) * towards;
       if (!sees_all(walls, p)) continue;
-      const double ratio = worst_ratio(walls, p);
+      const double ratio = measure_worst_ratio(walls, p);
       if (found && ratio < best) break;
       found = p, best = ratio;
     }
   }
-  if (!found && at_any_cost && (found = relax(walls, start, reach))) best = worst_ratio(walls, *found);
+  if (!found && at_any_cost && (found = relax(walls, start, reach))) best = measure_worst_ratio(walls, *found);
   return found ? climb(walls, *found, best, 0.25 * reach) : found;
 }
 

@@ -202,15 +202,16 @@ TEST(BuildDelaunay, neighbours_in_floating_point) {
 TEST(BuildDelaunay, the_counts_are_near_theory_for_random_points) {
   TetComplex c = complex_of(random_points(20000, 9));
   Context context;
-  DelaunayKernel kernel(c);
-  build_delaunay(c, kernel, context);
-  const double n = static_cast<double>(kernel.counts.points);
-  EXPECT_LE(static_cast<double>(kernel.counts.walk_steps) / n, 8);
-  EXPECT_GE(static_cast<double>(kernel.counts.insphere_tests) / n, 40);
-  EXPECT_LE(static_cast<double>(kernel.counts.insphere_tests) / n, 52);
-  EXPECT_GE(static_cast<double>(kernel.counts.tets_created) / n, 25);
-  EXPECT_LE(static_cast<double>(kernel.counts.tets_created) / n, 31);
-  EXPECT_EQ(kernel.counts.tets_created - kernel.counts.tets_deleted + 5, c.num_live());
+  KernelCounts counts;
+  build_delaunay(c, context, &counts);
+  const double n = static_cast<double>(counts.points);
+  EXPECT_LE(static_cast<double>(counts.walk_steps) / n, 9);
+  EXPECT_GE(static_cast<double>(counts.insphere_tests) / n, 4 * 19);
+  EXPECT_LE(static_cast<double>(counts.insphere_tests) / n, 4 * 25);
+  EXPECT_LE(static_cast<double>(counts.exact_tests) / n, 0.5);
+  EXPECT_GE(static_cast<double>(counts.tets_created) / n, 25);
+  EXPECT_LE(static_cast<double>(counts.tets_created) / n, 31);
+  EXPECT_EQ(counts.tets_created - counts.tets_deleted + 5, c.num_live());
   EXPECT_EQ(c.find_defect(), "");
 }
 

@@ -75,7 +75,7 @@ TEST(Refine, a_sphere_of_one_size_has_edges_of_that_size) {
   const auto faces = fixtures::constrained_faces(c);
   const double volume = fixtures::total_volume(c);
   Context context;
-  const RefineReport report = refine_complex(c, size, context);
+  const RefineReport report = refine_complex(c, size, {}, context);
   EXPECT_EQ(c.find_defect(), "");
   EXPECT_EQ(fixtures::constrained_faces(c), faces);
   EXPECT_NEAR(fixtures::total_volume(c), volume, 1e-12);
@@ -89,7 +89,7 @@ TEST(Refine, sizes_that_grow_are_kept_too) {
   const LinearSize size(0.15, 0.3);
   TetComplex c = complex_of(sphere(3), size);
   Context context;
-  refine_complex(c, size, context);
+  refine_complex(c, size, {}, context);
   EXPECT_EQ(c.find_defect(), "");
   std::size_t good = 0, all = 0;
   for (const auto& [a, b] : inner_edges(c)) {  // the surface is finer than asked for far from x = 0: inside alone
@@ -107,7 +107,7 @@ TEST(Refine, a_size_larger_than_the_body_adds_nothing_to_a_tet) {
   TetComplex c =
       complex_of(fixtures::to_model(fixtures::tetrahedron_facets({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1})), size);
   Context context;
-  EXPECT_EQ(refine_complex(c, size, context).points_inserted, 0u);
+  EXPECT_EQ(refine_complex(c, size, {}, context).points_inserted, 0u);
 }
 
 TEST(Refine, no_two_points_are_nearer_than_seven_tenths_of_the_size) {
@@ -115,7 +115,7 @@ TEST(Refine, no_two_points_are_nearer_than_seven_tenths_of_the_size) {
   TetComplex c = complex_of(fixtures::to_model(fixtures::box_facets({0, 0, 0}, {1, 1, 1})), size);
   const std::size_t given = c.num_vertices();
   Context context;
-  refine_complex(c, size, context);
+  refine_complex(c, size, {}, context);
   double nearest = 1;
   for (VertexIndex v = static_cast<VertexIndex>(given); v < c.num_vertices(); ++v)
     for (VertexIndex w = 0; w < v; ++w)
@@ -139,7 +139,7 @@ TEST(Refine, sizes_of_neighbours_keep_the_growth_and_the_limits) {
   boundary.hmax = 0.25;
   const auto size = build_boundary_size_field(boundary, context);
   for (TetVertex& v : c.vertex) v.h = size->size(v.point());
-  refine_complex(c, *size, context);
+  refine_complex(c, *size, {}, context);
   EXPECT_EQ(c.find_defect(), "");
   const double slope = (boundary.growth - 1) / boundary.growth;
   for (const auto& [a, b] : inner_edges(c)) {
@@ -158,7 +158,7 @@ TEST(Refine, regions_stay_apart) {
   TetComplex c = complex_of(fixtures::to_model(shells), size);
   const auto faces = fixtures::constrained_faces(c);
   Context context;
-  refine_complex(c, size, context);
+  refine_complex(c, size, {}, context);
   EXPECT_EQ(c.find_defect(), "");
   EXPECT_EQ(fixtures::constrained_faces(c), faces);
   double inner = 0;
@@ -187,8 +187,8 @@ TEST(Refine, two_runs_are_the_same) {
   const TetComplex start = complex_of(sphere(2), size);
   TetComplex a = start, b = start;
   Context context;
-  refine_complex(a, size, context);
-  refine_complex(b, size, context);
+  refine_complex(a, size, {}, context);
+  refine_complex(b, size, {}, context);
   EXPECT_EQ(a.node, b.node);
   EXPECT_EQ(a.neigh, b.neigh);
 }
@@ -200,7 +200,7 @@ TEST(Refine, ends_on_thin_bodies_and_keeps_them_valid) {
     TetComplex c = complex_of(fixtures::to_model(fixtures::box_facets({0, 0, 0}, {1, 1, thickness})), size);
     Context context;
     context.time_limit = 20;
-    refine_complex(c, size, context);
+    refine_complex(c, size, {}, context);
     EXPECT_EQ(c.find_defect(), "");
     EXPECT_NEAR(fixtures::total_volume(c), thickness, 1e-12);
   }
@@ -212,12 +212,12 @@ TEST(Refine, stops_at_limits) {
   TetComplex c = start;
   Context few;
   few.max_cells = 500;
-  EXPECT_THROW(refine_complex(c, size, few), LimitError);
+  EXPECT_THROW(refine_complex(c, size, {}, few), LimitError);
   c = start;
   std::atomic<bool> cancel = true;
   Context context;
   context.cancel = &cancel;
-  EXPECT_THROW(refine_complex(c, size, context), Cancelled);
+  EXPECT_THROW(refine_complex(c, size, {}, context), Cancelled);
 }
 
 }  // namespace

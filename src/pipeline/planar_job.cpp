@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/planar_job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "delfront/io.hpp"
+#include "pipeline/boundaries.hpp"
+#include "planar/far_field.hpp"
+
+namespace delfront {
+
+namespace {
+
+bool is_of_lines(const Mesh& mesh) {
+  return mesh.num_cells(CellType::line) > 0 && mesh.top_dimension() <= 2 &&
+         (mesh.dimension == 2 || mesh.top_dimension() == 1) &&
+         std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p.z == 0; });
+}
+
+/// Curves take the place of patches, so that one selection serves both.
+CurveId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, PlanarDomain& domain, CurveId far_field) {
+  Model stand_in;
+  for (const PlanarCurve& curve : domain.curves) stand_in.patches.push_back({curve.name, curve.kind});
+  for (const CurveId curve : domain.curve_of_segment) stand_in.patch_of_triangle.push_back(PatchId(curve.index()));
+  const PatchId patch =
+      apply_boundaries(boundaries, stand_in, far_field.is_valid() ? PatchId(far_field.index()) : PatchId());
+  domain.curves.clear();
+  for (const Patch& p : stand_in.patches) domain.curves.push_back({p.name, p.kind});
+  for (std::size_t i = 0; i < domain.segments.size(); ++i)
+    domain.curve_of_segment[i] = CurveId(stand_in.patch_of_triangle[TriangleId(i)].index());
+  return patch.is_valid() ? CurveId(patch.index()) : CurveId();
+}
+
+}  // namespace
+
+bool is_planar_job(const std::vector<NamedMesh>& inputs) {
+  return std::all_of(inputs.begin(), inputs.end(), [](const NamedMesh& input) { return is_of_lines(input.mesh); });
+}
+
+CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& scale, Context& context) {
+  std::vector<BoundaryOptions> boundaries = options.boundaries;
+  const bool has_far_field = options.domain.enclose.shape != "none";
+  CurveId far_field;
+  if (has_far_field && options.stop_after == "geometry") {
+    const std::string& name = options.domain.enclose.name;
+    std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
+  } else if (has_far_field) {
+    far_field = add_far_field(domain, options.domain.enclose, options.size, scale, context);
+    if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
+  }
+  far_field = apply_boundaries(boundaries, domain, far_field);
+  const auto is_far_field = [](const PlanarCurve& curve) { return curve.kind == "farfield"; };
+  if (has_far_field) {
+    for (PlanarCurve& curve : domain.curves)
+      if (curve.kind.empty()) curve.kind = "wall";
+  } else if (options.domain.keep == "outside" && std::none_of(domain.curves.begin(), domain.curves.end(), is_far_field)) {
+    throw UsageError(
+        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield circle:50c, or "
+        "give the outer curve the kind farfield ([boundaries.NAME])");
+  }
+  return far_field;
+}
+
+void check_planar_outputs(const Options& options) {
+  for (const std::string& path : options.output.files)
+    if (format_of(path, options.output.format, true).name == "openfoam")
+      throw UsageError(fmt::format("{}: an OpenFOAM case holds grids of volume cells, and the input lies in the plane; "
+                                   "write su2, vtu, msh or mesh, or extrude the grid by one cell",
+                                   path));
+}
+
+Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context) {
+  if (!far_field.is_valid()) return generate_planar(domain, options, context);
+  PlanarDomain known = domain;
+  const PlanarCurve asked = known.curves[far_field];
+  known.curves[far_field].kind = "farfield";
+  Outcome outcome = generate_planar(known, options, context);
+  const GroupId group = outcome.mesh.find_group(1, asked.name);
+  if (group.is_valid()) outcome.mesh.groups[group].kind = asked.kind;
+  return outcome;
+}
+
+Mesh line_mesh(const PlanarDomain& domain) {
+  Mesh mesh;
+  mesh.dimension = 2;
+  for (const Point2 p : domain.points) mesh.points.push_back({p.x, p.y, 0});
+  for (const PlanarCurve& curve : domain.curves) mesh.groups.push_back({curve.name, 1, curve.kind, false});
+  CellBlock& lines = mesh.block(CellType::line);
+  for (std::size_t i = 0; i < domain.segments.size(); ++i) {
+    lines.vertices.insert(lines.vertices.end(), domain.segments[i].begin(), domain.segments[i].end());
+    lines.group.push_back(GroupId(domain.curve_of_segment[i].index()));
+  }
+  return mesh;
+}
+
+}  // namespace delfront

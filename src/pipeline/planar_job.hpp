@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "delfront/planar.hpp"
+
+namespace delfront {
+
+/// @brief Whether all inputs are lines in the plane z = 0: then the job is one in the plane.
+bool is_planar_job(const std::vector<NamedMesh>& inputs);
+
+/// @brief Far field, curves' names and kinds, and what to keep: set_boundaries for the plane.
+/// @param options  lengths resolved; domain.keep is set where it follows from the far field
+/// @return the far field, or none
+CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& scale, Context& context);
+
+/// @brief Formats that hold no 2-D grid are refused before any work.
+/// @throws UsageError
+void check_planar_outputs(const Options& options);
+
+/// @brief generate_planar, knowing the far field by its kind whatever kind the job gives it in the grid.
+Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context);
+
+/// @brief The domain's lines as a mesh, to look at or to write.
+Mesh line_mesh(const PlanarDomain& domain);
+
+}  // namespace delfront

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frontal Delaunay refinement in rounds (Rebay 1993). Terms: a triangle is accepted when its circle is about as large as
+// its vertices' sizes ask; the front is the edges between accepted triangles (or the boundary) and those that are not. A
+// triangle at the front proposes the point that would make a good triangle over that edge, but never beyond its own
+// circumcentre. Proposals go in in the order of the last round's, which follows the front; the kernel refuses those too
+// close to another point or to the boundary.
+#include "planar/refine.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace delfront {
+
+namespace {
+
+constexpr double kAcceptedRadius = 0.75;  ///< of the wanted size; the regular triangle has 0.577
+constexpr double kMinDistance = 0.72;     ///< of the wanted size, between points
+constexpr double kLongestOverEdge = 1.6;  ///< sides over a short edge, of its length: 36 degrees between them
+constexpr double kShortestOverEdge = 0.68;  ///< sides over a long edge, of its length: 95 degrees between them
+constexpr std::size_t kPointsPerCancelCheck = 4096;
+
+/// What is known of a triangle, in its flags; all of it goes when its slot is used again.
+enum State : std::uint32_t {
+  queued = 1u << 5,  ///< made since the last round
+  accepted = 1u << 6,
+  large = 1u << 7,      ///< not accepted
+  listed = 1u << 8,     ///< in candidates_ while that is put together
+  refused_0 = 1u << 9,  ///< three bits: the point over edge e was refused; that would happen again
+  refused_circumcentre = 1u << 12,
+};
+
+struct Proposal {
+  Point2 at;
+  TriIndex tri;
+  EdgeRef behind;        ///< the edge it stands over, from behind; kNoTri for none
+  std::uint32_t way;     ///< which of the triangle's proposals it is, as a State bit
+  std::uint32_t region;
+};
+
+class Refinement {
+ public:
+  Refinement(PlanarGrid& grid, const SizeField& size, Context& context)
+      : grid_(grid), c_(grid.complex), size_(size), context_(context), kernel_(c_) {}
+
+  RefineReport run() {
+    kernel_.flags_of_new = queued;
+    kernel_.last_tri = 0;
+    for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+      if (c_.is_dead(t)) continue;
+      c_.tri[t].flags = (c_.tri[t].flags & kEdgeBits) | queued;
+      fresh_.push_back(t);
+    }
+    for (bool is_frontal = true;;) {
+      collect_candidates();
+      propose(is_frontal);
+      ask_sizes();
+      const std::size_t inserted = insert();
+      ++report_.rounds;
+      if (inserted > 0) {
+        is_frontal = true;  // the front goes on from there
+        continue;
+      }
+      if (!is_frontal) break;
+      is_frontal = false;  // what the front could not reach: circumcentres
+      for (TriIndex t = 0; t < c_.tri.size(); ++t) fresh_.push_back(t);
+    }
+    for (Triangle& t : c_.tri) t.flags &= kEdgeBits | kDead;
+    return report_;
+  }
+
+  const PlanarCounts& counts() const { return kernel_.counts; }
+
+ private:
+  bool is_inside(TriIndex t) const { return c_.tri[t].region != kOutside && !c_.is_dead(t); }
+
+  double mean_size(const Triangle& s) const { return (c_.h[s.node[0]] + c_.h[s.node[1]] + c_.h[s.node[2]]) / 3; }
+
+  /// Relative to the first node.
+  Point2 circumcentre(const Triangle& s) const {
+    const Point2 a = c_.point[s.node[0]], b = c_.point[s.node[1]] - a, d = c_.point[s.node[2]] - a;
+    const double b2 = squared_length(b), d2 = squared_length(d), f = 0.5 / cross(b, d);
+    return {f * (d.y * b2 - b.y * d2), f * (b.x * d2 - d.x * b2)};
+  }
+
+  bool is_accepted(const Triangle& s) const {
+    const double radius = kAcceptedRadius * mean_size(s);
+    return squared_length(circumcentre(s)) <= radius * radius;
+  }
+
+  /// Who may propose now and could not before: fresh triangles, and those that the front has come to.
+  void collect_candidates() {
+    for (const TriIndex t : fresh_) {
+      Triangle& s = c_.tri[t];
+      if (!(s.flags & queued)) continue;
+      s.flags &= ~queued;
+      if (is_inside(t)) s.flags |= is_accepted(s) ? accepted : large;
+    }
+    candidates_.clear();
+    const auto add = [&](TriIndex t) {
+      Triangle& s = c_.tri[t];
+      if ((s.flags & (large | listed)) != large) return;
+      s.flags |= listed;
+      candidates_.push_back(t);
+    };
+    for (const TriIndex t : fresh_) {
+      add(t);
+      if (c_.tri[t].flags & accepted)
+        for (const EdgeRef ref : c_.tri[t].neigh) add(ref >> 2);
+    }
+    for (const TriIndex t : candidates_) c_.tri[t].flags &= ~listed;
+    fresh_.clear();
+  }
+
+  void propose(bool is_frontal) {
+    proposals_.clear();
+    for (const TriIndex t : candidates_) {
+      const Triangle& s = c_.tri[t];
+      const Point2 centre = circumcentre(s);
+      if (!std::isfinite(squared_length(centre))) continue;
+      if (is_frontal)
+        propose_over_edge(t, s, c_.point[s.node[0]] + centre);
+      else if (!(s.flags & refused_circumcentre))
+        proposals_.push_back({c_.point[s.node[0]] + centre, t, kNoTri, refused_circumcentre, s.region});
+    }
+    report_.candidates += proposals_.size();
+  }
+
+  /// Over the shortest edge of the front.
+  void propose_over_edge(TriIndex t, const Triangle& s, Point2 centre) {
+    double shortest = 1e300;
+    Proposal proposal{{}, t, kNoTri, 0, s.region};
+    for (unsigned e = 0; e < 3; ++e) {
+      if (s.flags & (refused_0 << e)) continue;
+      const bool is_constrained = s.flags >> e & 1;
+      if (!is_constrained && !(c_.tri[s.neigh[e] >> 2].flags & accepted)) continue;
+      const VertexIndex v = s.node[next_of(e)], w = s.node[previous_of(e)];
+      const Point2 a = c_.point[v], along = c_.point[w] - a;
+      const double squared = squared_length(along);
+      if (squared >= shortest) continue;
+      const double edge = std::sqrt(squared), h = 0.5 * (c_.h[v] + c_.h[w]);
+      const Point2 normal = {-along.y / edge, along.x / edge};
+      const Point2 middle = a + 0.5 * along;
+      const double up = dot(centre - middle, normal);
+      if (up <= 0) continue;
+      const double side = std::max(std::min(h, kLongestOverEdge * edge), kShortestOverEdge * edge);
+      const double wanted = std::sqrt(side * side - 0.25 * squared);
+      proposal.at = up <= wanted ? centre : middle + wanted * normal;
+      proposal.way = refused_0 << e;
+      proposal.behind = s.neigh[e];
+      shortest = squared;
+    }
+    if (proposal.way) proposals_.push_back(proposal);
+  }
+
+  void ask_sizes() {
+    places_.resize(proposals_.size());
+    sizes_.resize(proposals_.size());
+    for (std::size_t i = 0; i < proposals_.size(); ++i) places_[i] = {proposals_[i].at.x, proposals_[i].at.y, 0};
+    size_.sizes(places_, sizes_);
+    for (std::size_t i = 0; i < proposals_.size(); ++i)
+      sizes_[i] = std::min(sizes_[i], grid_.region_h[proposals_[i].region]);
+  }
+
+  /// From the middle of a gap each: a point that goes in far from others of its round cuts a wide fan of the long
+  /// triangles ahead of the front, and in the front's order every point would.
+  std::size_t insert() {
+    const std::size_t n = proposals_.size();
+    std::size_t inserted = 0, seen = 0;
+    const auto visit = [&](std::size_t i) {
+      if (seen++ % kPointsPerCancelCheck == 0) {
+        context_.progress("refine", c_.num_live(), 0, "cells");
+        context_.check_cells(c_.num_live());
+      }
+      const Proposal& p = proposals_[i];
+      if (insert_one(p, sizes_[i]))
+        ++inserted;
+      else if (is_unchanged(p.tri))
+        c_.tri[p.tri].flags |= p.way;
+    };
+    if (n > 0) visit(0);
+    for (std::size_t stride = std::bit_ceil(n); stride > 1; stride /= 2)
+      for (std::size_t i = stride / 2; i < n; i += stride) visit(i);
+    return inserted;
+  }
+
+  bool is_unchanged(TriIndex t) const { return !(c_.tri[t].flags & queued); }
+
+  /// Where to begin: at the triangle now over the front edge, from the one behind it, which rarely goes.
+  TriIndex start_of(const Proposal& p) const {
+    if (is_unchanged(p.tri) || p.behind == kNoTri || !is_unchanged(p.behind >> 2)) return p.tri;
+    return c_.across(p.behind) >> 2;
+  }
+
+  bool insert_one(const Proposal& p, double h) {
+    const TriIndex holder = kernel_.locate(p.at, start_of(p));
+    if (c_.tri[holder].region != p.region) return false;
+    const auto v = static_cast<VertexIndex>(c_.point.size());
+    c_.point.push_back(p.at);
+    if (kernel_.insert_into(holder, v, {.min_distance = kMinDistance * h, .keeps_off_segments = true}) !=
+        PlanarKernel::Insert::done) {
+      c_.point.pop_back();
+      return false;
+    }
+    c_.h.push_back(h);
+    ++report_.points_inserted;
+    fresh_.insert(fresh_.end(), kernel_.made().begin(), kernel_.made().end());
+    return true;
+  }
+
+  PlanarGrid& grid_;
+  TriComplex& c_;
+  const SizeField& size_;
+  Context& context_;
+  PlanarKernel kernel_;
+  RefineReport report_;
+  std::vector<TriIndex> fresh_;  ///< made since the last round; some more than once
+  std::vector<TriIndex> candidates_;
+  std::vector<Proposal> proposals_;
+  std::vector<Point> places_;
+  std::vector<double> sizes_;
+};
+
+}  // namespace
+
+RefineReport refine_complex(PlanarGrid& grid, const SizeField& size, Context& context, PlanarCounts* counts) {
+  const StageTimer timer(context, "refine");
+  Refinement refinement(grid, size, context);
+  const RefineReport report = refinement.run();
+  if (counts) *counts = refinement.counts();
+  return report;
+}
+
+}  // namespace delfront
