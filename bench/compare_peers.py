@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """delfront beside its peers: one run, one set of tables with ratios.
 
-    bench/compare_peers.py --build                                   build the peers' drivers (scripts/setup --peers)
+    bench/compare_peers.py --build                                   build the peers' drivers now
     bench/compare_peers.py --workload all --repeat 5 --threads 1,2 --write-docs
     bench/compare_peers.py --workload points --sizes 1e5 --cases uniform,graded
     bench/compare_peers.py --tables --write-docs                     tables again from the results there are

@@ -74,7 +74,8 @@ void print_findings(const std::vector<Finding>& findings, std::size_t places_sho
 }
 
 void print_quality(const QualityReport& report, std::size_t worst_shown) {
-  fmt::print("volume         {:.9g}\n", report.volume);
+  const bool is_planar = !report.find("min_dihedral");
+  fmt::print("{:<14} {:.9g}\n", is_planar ? "area" : "volume", report.volume);
   fmt::print("{:<14} {:>11} {:>11} {:>11}\n", "quality", "min", "mean", "max");
   for (const Measure& m : report.measures) {
     fmt::print("  {:<12} {:>11.4g} {:>11.4g} {:>11.4g}{}{}\n", m.name, m.min, m.mean, m.max, m.unit.empty() ? "" : " ",
@@ -85,8 +86,8 @@ void print_quality(const QualityReport& report, std::size_t worst_shown) {
                  fmt::join(m.worst[i].ids, " "));
     }
   }
-  fmt::print("  cells with a dihedral angle below 5 deg: {}, below 10 deg: {}\n", with_commas(report.cells_below_5_deg),
-             with_commas(report.cells_below_10_deg));
+  fmt::print("  cells with {} angle below 5 deg: {}, below 10 deg: {}\n", is_planar ? "an" : "a dihedral",
+             with_commas(report.cells_below_5_deg), with_commas(report.cells_below_10_deg));
 }
 
 void print_mesh_facts(const Mesh& mesh) {
@@ -97,7 +98,9 @@ void print_mesh_facts(const Mesh& mesh) {
   for (const CellBlock& block : mesh.blocks)
     for (const GroupId group : block.group)
       if (group.is_valid() && group.index() < count.size()) ++count[group.index()];
-  for (const auto& [dim, title] : {std::pair{3, "regions"}, {2, "patches"}, {1, "curves"}}) {
+  for (const auto& [codimension, title] : {std::pair{0, "regions"}, {1, "patches"}, {2, "curves"}}) {
+    const int dim = mesh.dimension - codimension;
+    if (dim < 1) continue;
     std::string line;
     for (std::size_t g = 0; g < count.size(); ++g) {
       const Group& group = mesh.groups[GroupId(g)];

@@ -12,6 +12,7 @@
 #include "delfront/model.hpp"
 #include "delfront/surface_check.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/planar_job.hpp"
 #include "pipeline/report_json.hpp"
 
 namespace delfront::cli {
@@ -38,15 +39,23 @@ struct Inspected {
   SurfaceReport surface;
   std::vector<Finding> findings;  ///< of the surface, or of the grid
   QualityReport quality;          ///< of a valid grid
-  bool is_usable() const { return is_grid ? !has_errors(findings) : surface.can_bound_volume; }
+  bool is_of_lines = false;       ///< lines in the plane
+  bool is_usable() const { return is_grid || is_of_lines ? !has_errors(findings) : surface.can_bound_volume; }
 };
 
 Inspected inspect(const std::string& path, const std::string& format, Context& context) {
   Inspected result;
   result.mesh = read_mesh(path, context, format);
+  const NamedMesh input{result.mesh, std::filesystem::path(path).stem().string()};
+  const bool is_planar = is_planar_job({input});
+  result.is_of_lines = is_planar && result.mesh.top_dimension() == 1;
+  if (result.is_of_lines) {
+    result.findings = check_planar_domain(build_planar_domain({input}, context), context);
+    return result;
+  }
   if (result.mesh.top_dimension() < 2)
     throw InputError(fmt::format("{} has neither faces nor volume cells; there is nothing to look at", path));
-  result.is_grid = result.mesh.top_dimension() == 3;
+  result.is_grid = is_planar || result.mesh.top_dimension() == 3;
   if (result.is_grid) {
     result.findings = check(result.mesh);
     if (!has_errors(result.findings)) result.quality = measure_quality(result.mesh, context);
@@ -90,6 +99,8 @@ Json facts_json(const std::string& path, const Inspected& it) {
   if (it.is_grid) {
     json["findings"] = to_json(it.findings);
     json["quality"] = to_json(it.quality);
+  } else if (it.is_of_lines) {
+    json["findings"] = to_json(it.findings);
   } else {
     json["surface"] = to_json(it.surface);
   }
@@ -147,14 +158,16 @@ class CheckCommand : public Command {
 
  private:
   std::string verdict(const Inspected& it) const {
-    const char* what = it.is_grid ? "is not a valid grid" : "cannot bound a volume as it is";
+    const char* what = it.is_grid       ? "is not a valid grid"
+                       : it.is_of_lines ? "cannot be gridded as it is"
+                                        : "cannot bound a volume as it is";
     const std::string hint =
         defects_.empty() ? "; --defects FILE.vtp shows all places" : "; all places are in " + defects_;
     return fmt::format("{} {}{}", file_, what, hint);
   }
 
   static void print(const Inspected& it) {
-    if (it.is_grid)
+    if (it.is_grid || it.is_of_lines)
       print_mesh_facts(it.mesh);
     else
       print_surface_facts(it.surface);
@@ -199,8 +212,9 @@ class InfoCommand : public Command {
   void print(const Inspected& it) const {
     fmt::print("file           {}\n", file_);
     print_mesh_facts(it.mesh);
-    if (!it.is_grid) print_surface_facts(it.surface);
-    if (it.is_grid && it.is_usable()) fmt::print("volume         {:.9g}\n", it.quality.volume);
+    if (!it.is_grid && !it.is_of_lines) print_surface_facts(it.surface);
+    if (it.is_grid && it.is_usable())
+      fmt::print("{:<14} {:.9g}\n", it.mesh.dimension == 2 ? "area" : "volume", it.quality.volume);
     for (const Finding& f : it.findings) fmt::print("{:<14} {}: {}\n", severity_name(f.severity), f.kind, f.message);
   }
 

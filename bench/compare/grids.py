@@ -19,8 +19,8 @@ def read_numbers(file, count: int) -> np.ndarray:
         text = rest + part
         cut = len(text) if not part else text.rfind(b"\n") + 1
         text, rest = text[:cut], text[cut:]
-        found = np.fromstring(text.replace(b"\n", b" "), sep=" ", count=-1 if part else count - done)
-        found = found[: count - done]
+        word = re.search(rb"[A-Za-z]{2}|#", text)  # the next section
+        found = np.fromstring(text[: word.start()] if word else text, sep=" ")[: count - done]
         values[done : done + len(found)] = found
         done += len(found)
         if not part:

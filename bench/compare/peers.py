@@ -52,11 +52,13 @@ def debian_version(package: str) -> str:
 def pypi_version(package: str) -> str:
     """Of the package in our environment, "" where it is not there."""
     code = f"import importlib.metadata as m; print(m.version('{package}'))"
-    return first_version(output_of([str(VENV_PYTHON), "-c", code])) if has_pypi(package) else ""
+    return output_of([str(VENV_PYTHON), "-c", code]).strip() if has_pypi(package) else ""
 
 
 def has_pypi(package: str) -> bool:
-    return VENV_PYTHON.exists() and any(glob.glob(str(FOLDER / f"venv/lib/python3*/site-packages/{package}-*.dist-info")))
+    return VENV_PYTHON.exists() and any(
+        glob.glob(str(FOLDER / f"venv/lib/python3*/site-packages/{package}-*.dist-info"))
+    )
 
 
 def cpu_flags() -> list[str]:
@@ -156,7 +158,9 @@ def find_ours(name: str, given: str | None) -> tuple[str, str]:
     if found:
         return str(max(found, key=lambda path: path.stat().st_mtime)), ""
     program = shutil.which(name)
-    return (program, "") if program else ("", f"build it: cmake --preset bench && cmake --build --preset bench ({name})")
+    return (
+        (program, "") if program else ("", f"build it: cmake --preset bench && cmake --build --preset bench ({name})")
+    )
 
 
 def find_gmshs() -> list[tuple[str, list[str], str, str]]:

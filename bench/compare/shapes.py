@@ -39,7 +39,9 @@ def lines_of(pattern: str, table: np.ndarray, start: int | None = None):
         if start is None:
             yield "".join([pattern % tuple(row) + "\n" for row in rows])
         else:
-            yield "".join([numbers.format(start + first + i) + pattern % tuple(row) + "\n" for i, row in enumerate(rows)])
+            yield "".join(
+                [numbers.format(start + first + i) + pattern % tuple(row) + "\n" for i, row in enumerate(rows)]
+            )
 
 
 COORDINATES = "%.17g %.17g %.17g"
@@ -133,7 +135,10 @@ def split_long_edges(points: np.ndarray, triangles: np.ndarray, length: float) -
         split = wanted[longest_edge]
         corner = np.take_along_axis(triangles, (longest[:, None] + np.arange(3)) % 3, axis=1)[split]
         new = middle[longest_edge[split]]
-        halves = [np.stack([corner[:, 0], corner[:, 1], new], axis=1), np.stack([corner[:, 0], new, corner[:, 2]], axis=1)]
+        halves = [
+            np.stack([corner[:, 0], corner[:, 1], new], axis=1),
+            np.stack([corner[:, 0], new, corner[:, 2]], axis=1),
+        ]
         points = np.concatenate([points, (points[first[wanted]] + points[second[wanted]]) / 2])
         triangles = np.concatenate([triangles[~split], *halves])
 

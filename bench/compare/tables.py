@@ -63,7 +63,7 @@ def doubts(workload: str, case: dict, row: dict) -> str:
     given = case["facts"].get(key) or statistics.median([r["facts"][key] for r in rows if key in r["facts"]] or [0])
     if key in facts and given and abs(facts[key] / given - 1) > VOLUME_TOLERANCE:
         return f"{key} off by {abs(facts[key] / given - 1):.1e}"
-    if workload == "points" and case["name"] in ("uniform", "graded") and "tets" in facts:
+    if workload == "points" and case["name"] != "lattice" and "tets" in facts:
         usual = statistics.median([r["facts"]["tets"] for r in rows if "tets" in r["facts"]])
         if facts["tets"] != usual:
             return f"{facts['tets'] - usual:+,.0f} tets"
@@ -89,8 +89,13 @@ def case_table(workload: str, case: dict) -> list[str]:
         if row["failure"]:
             lines.append([tool, str(row["threads"]), row["failure"], *[""] * (len(head) - 3)])
             continue
-        count, rss, rates = row["facts"].get(counted), median(row, "rss"), [rate(case, row, k) for k in ("phase", "whole")]
-        cells = [tool, str(row["threads"]), str(len(row["runs"])), f"{count:,}" if count else "–", spread(row, "phase")]
+        count, rss, rates = (
+            row["facts"].get(counted),
+            median(row, "rss"),
+            [rate(case, row, k) for k in ("phase", "whole")],
+        )
+        cells = [tool, str(row["threads"]), str(len(row["runs"])), f"{count:,}" if count else "–"]
+        cells.append(spread(row, "phase"))
         cells += [short(rates[0]) if rates[0] else "–", spread(row, "whole"), short(rates[1]) if rates[1] else "–"]
         cells += [f"{rss / 2**20:.0f}", f"{rss / count:.0f}" if count else "–"]
         values = [(row["facts"].get(key), form) for _, key, form in QUALITY[workload]]
@@ -107,12 +112,14 @@ def newest(case: dict) -> str:
 # --- ratios -----------------------------------------------------------------------------------------------------------
 
 
-def pairs(case: dict) -> list[tuple[dict, list[dict]]]:
-    """Our rows, each with the peers' rows of the same run that used no more threads and gave a time."""
+def pairs(workload: str, case: dict) -> list[tuple[dict, list[dict]]]:
+    """Our rows, each with the peers' rows of the same run that used no more threads, gave a time and
+    whose result is right."""
     timed = [row for row in case["rows"] if median(row, "phase") is not None and not row["failure"]]
     found = []
     for ours in (row for row in timed if row["tool"] == OURS):
-        others = [r for r in timed if r["tool"] != OURS and r["stamp"] == ours["stamp"] and r["threads"] <= ours["threads"]]
+        others = [row for row in timed if row["tool"] != OURS and row["threads"] <= ours["threads"]]
+        others = [row for row in others if row["stamp"] == ours["stamp"] and not doubts(workload, case, row)]
         found.append((ours, others))
     return found
 
@@ -121,22 +128,31 @@ def size_of(case: dict) -> str:
     return f"{case['size']:.0e}".replace("e+0", "e")
 
 
-def faster_than_one_thread(case: dict, ours: dict) -> str:
-    alone = [row for row, _ in pairs(case) if row["threads"] == 1 and row["stamp"] == ours["stamp"]]
+def faster_than_one_thread(workload: str, case: dict, ours: dict) -> str:
+    alone = [row for row, _ in pairs(workload, case) if row["threads"] == 1 and row["stamp"] == ours["stamp"]]
     return f"{median(alone[0], 'phase') / median(ours, 'phase'):.2f}" if alone and ours["threads"] > 1 else ""
 
 
 def ratios_of_points(cases: list[dict]) -> list[str]:
     lines = []
     for case in cases:
-        for ours, others in pairs(case):
+        for ours, others in pairs("points", case):
             mine = median(ours, "phase")
             best = min(others, key=lambda row: median(row, "phase"), default=None)
-            cells = [f"{median(best, 'phase'):.3f}", f"**{median(best, 'phase') / mine:.2f}**", named(best)] if best else ["–"] * 3
+            cells = ["–"] * 3
+            if best:
+                cells = [f"{median(best, 'phase'):.3f}", f"**{median(best, 'phase') / mine:.2f}**", named(best)]
             whole = min((median(row, "whole") for row in others), default=None)
             cells.insert(2, f"{whole / median(ours, 'whole'):.2f}" if whole else "–")
             lines.append(
-                [case["name"], size_of(case), str(ours["threads"]), f"{mine:.3f}", *cells, faster_than_one_thread(case, ours)]
+                [
+                    case["name"],
+                    size_of(case),
+                    str(ours["threads"]),
+                    f"{mine:.3f}",
+                    *cells,
+                    faster_than_one_thread("points", case, ours),
+                ]
             )
     head = ["points", "size", "threads", "delfront phase s", "fastest peer's s", "peer / ours", "whole: fastest / ours"]
     return table([*head, "fastest peer", "ours: 1 thread / this"], lines)
@@ -145,12 +161,16 @@ def ratios_of_points(cases: list[dict]) -> list[str]:
 def ratios_of_fill(cases: list[dict]) -> list[str]:
     lines = []
     for case in cases:
-        for ours, others in pairs(case):
+        for ours, others in pairs("fill", case):
             hxt = [r for r in others if r["tool"].startswith("Gmsh HXT (PyPI") and r["threads"] == ours["threads"]]
             best = max(others, key=lambda row: rate(case, row), default=None)
             mine, facts = rate(case, ours), ours["facts"]
             cells = [case["name"], size_of(case), str(ours["threads"]), f"{facts['tets']:,}", short(mine)]
-            cells += [f"{1e6 / mine:.2f}", f"{median(ours, 'rss') / facts['tets']:.0f}", faster_than_one_thread(case, ours)]
+            cells += [
+                f"{1e6 / mine:.2f}",
+                f"{median(ours, 'rss') / facts['tets']:.0f}",
+                faster_than_one_thread("fill", case, ours),
+            ]
             if hxt:
                 h = hxt[0]
                 cells += [short(rate(case, h)), f"**{mine / rate(case, h):.2f}**"]
@@ -169,7 +189,7 @@ def ratios_of_fill(cases: list[dict]) -> list[str]:
 def ratios_of_planar(cases: list[dict]) -> list[str]:
     lines = []
     for case in cases:
-        for ours, others in pairs(case):
+        for ours, others in pairs("planar", case):
             mine = rate(case, ours)
             cells = [case["name"], size_of(case), short(mine)]
             for start in ("Triangle", "Gmsh 2-D 5", "Gmsh 2-D 6"):
@@ -210,14 +230,20 @@ def section(workload: str, results: dict) -> str:
         lines[-1] += f"average before a run {min(loads):.1f} to {max(loads):.1f}."
     lines += ["", *RATIOS[workload](cases)]
     for case in cases:
-        lines += [f"### {case['name']}, size {size_of(case)}", "", about(case), "", *case_table(workload, case)]
+        lines += [
+            f"### {case['name']}, size {size_of(case)}",
+            "",
+            f"Input: {about(case)}",
+            "",
+            *case_table(workload, case),
+        ]
     return "\n".join([*lines, "Commands, of the smallest size and one thread:", "", *commands_of(cases), ""])
 
 
 def about(case: dict) -> str:
     facts = case["facts"]
     counts = [f"{facts[key]:,} {key}" for key in ("points", "triangles") if key in facts]
-    return f"{facts['about'][0].upper()}{facts['about'][1:]}" + (f": {', '.join(counts)}." if counts else ".")
+    return facts["about"] + (f": {', '.join(counts)}." if counts else ".")
 
 
 def replace_between(path: Path, begin: str, end: str, text: str) -> None:

@@ -49,7 +49,11 @@ def main() -> int:
     seconds = time.perf_counter() - start
     corner = grid["vertices"][grid["triangles"]]
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    facts = {"seconds": seconds, "triangles": len(corner), "area": float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2)}
+    facts = {
+        "seconds": seconds,
+        "triangles": len(corner),
+        "area": float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2),
+    }
     facts["min_angle"] = smallest_angle(grid["vertices"], grid["triangles"])
     print(json.dumps(facts))
     return 0

@@ -21,6 +21,7 @@ struct RecoveryReport {
   std::size_t steiner_moved = 0;                     ///< moved into the volume again, so that the surface is unchanged
   std::size_t steiner_left = 0;                      ///< still on the surface: its triangles there are subdivided
   std::vector<Place> left;
+  std::vector<std::string> left_why;  ///< one a place of `left`: why its triangles had to stay divided
 };
 
 /// @brief What refinement did (T3).

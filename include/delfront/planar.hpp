@@ -27,9 +27,10 @@ struct Point2 {
 struct Triangulation2 {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  std::vector<std::array<std::uint32_t, 3>> triangles;   ///< (num_triangles, 3) point numbers
-  std::vector<std::array<std::uint32_t, 3>> neighbours;  ///< neighbours[t][i] lies opposite triangles[t][i]; kNone: hull
-  std::vector<std::uint32_t> hull;                       ///< anticlockwise; with the points on its sides
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< (num_triangles, 3) point numbers
+  std::vector<std::array<std::uint32_t, 3>>
+      neighbours;                   ///< neighbours[t][i] lies opposite triangles[t][i]; kNone: hull
+  std::vector<std::uint32_t> hull;  ///< anticlockwise; with the points on its sides
   std::vector<std::pair<std::uint32_t, std::uint32_t>> duplicates;  ///< (point, the earlier one at the same place)
 };
 
@@ -45,7 +46,7 @@ Triangulation2 delaunay2(std::span<const Point2> points, Context& context);
 /// @brief A named line of the boundary: one or more chains of segments.
 struct PlanarCurve {
   std::string name;
-  std::string kind;         ///< "wall", "farfield", …; empty: not said
+  std::string kind;  ///< "wall", "farfield", …; empty: not said
 };
 
 /// @brief A place in a region, which names it and may bound its size.
@@ -77,8 +78,8 @@ struct PlanarDomain {
 
 /// @brief The whole run in the plane: a domain to a grid of triangles (2-D Mesh: segments are named groups of lines).
 ///
-/// With options.planar.boundary = "keep" the boundary's points are the given ones, bit for bit, in the same order, and no
-/// other point lies on it; with "split" segments are divided where sizes or angles ask for it. Sizes come from the
+/// With options.planar.boundary = "keep" the boundary's points are the given ones, bit for bit, in the same order, and
+/// no other point lies on it; with "split" segments are divided where sizes or angles ask for it. Sizes come from the
 /// boundary and options.size; `size`, where given, lowers them.
 /// @throws InputError    segments that cross (places), nothing bounded, a coordinate not finite
 /// @throws LimitError, Cancelled
@@ -87,8 +88,12 @@ struct PlanarDomain {
 Outcome generate_planar(const PlanarDomain& domain, const Options& options, Context& context,
                         const SizeField* size = nullptr);
 
-/// @brief The domain that a 2-D mesh describes: its lines (with their groups as curves), its points, seeds from groups of
-/// points of kind "hole" and "region". Cells are not used. Equal points are merged, the first stays.
+/// @brief What keeps a domain from being gridded: crossing segments, nothing bounded, each with its places.
+/// @return empty for a domain that generate_planar takes
+std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& context);
+
+/// @brief The domain that a 2-D mesh describes: its lines (with their groups as curves), its points, seeds from groups
+/// of points of kind "hole" and "region". Cells are not used. Equal points are merged, the first stays.
 /// @throws InputError  no lines; a point off the plane z = 0 or not finite
 PlanarDomain build_planar_domain(const std::vector<NamedMesh>& inputs, Context& context);
 

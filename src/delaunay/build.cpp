@@ -21,7 +21,8 @@ bool are_collinear(Point a, Point b, Point c) {
   return flat(0, 1) && flat(1, 2) && flat(2, 0);
 }
 
-/// Four vertices that span a volume.
+}  // namespace
+
 std::array<VertexIndex, 4> find_first_tet(const TetComplex& complex) {
   const auto n = static_cast<VertexIndex>(complex.num_vertices());
   auto find = [&](VertexIndex from, auto&& fits) {
@@ -40,6 +41,8 @@ std::array<VertexIndex, 4> find_first_tet(const TetComplex& complex) {
   if (k == n) throw InputError("all points lie in one plane: there is no volume to grid");
   return {0, i, j, k};
 }
+
+namespace {
 
 class Builder {
  public:

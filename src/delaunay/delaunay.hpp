@@ -94,8 +94,12 @@ class DelaunayKernel {
   Faces look_across_exactly(const View& view, TetIndex t, VertexIndex v, double min_distance);
   Insert insert_checked(VertexIndex v, TetIndex start, const Limits& limits);
   VertexIndex find_duplicate(TetIndex start, VertexIndex v) const;
-  Insert grow_cavity(TetIndex start, VertexIndex v, const Limits& limits);
-  void add_to_cavity(TetIndex t, unsigned grown);
+  template <bool kConstrained>
+  bool look_across_fast(TetIndex t, const VertexIndex* apex, VertexIndex v, unsigned open, double min_distance2,
+                        Faces& faces);
+  template <bool kConstrained>
+  Insert grow_cavity(TetIndex start, VertexIndex v, double min_distance);
+  bool has_foreign(const VertexIndex* apex, unsigned faces) const;
   void add_to_border(TetIndex t, unsigned faces);
   void collect_border();
   void make_ball();
@@ -116,9 +120,14 @@ class DelaunayKernel {
   FlatArray<FaceRef> border_;         ///< faces of the cavity, from inside
   std::vector<std::uint8_t> seen_;    ///< by cavity tet: faces that see the point; with constraints only
   std::vector<VertexIndex> reached_;  ///< every vertex of the grown cavity, some of them more than once
+  bool is_star_shaped_ = true;        ///< as it was grown
   Ball ball_;
   std::uint32_t random_state_ = 12345;
 };
+
+/// @brief Four vertices of the complex that span a volume.
+/// @throws InputError  there are none
+std::array<VertexIndex, 4> find_first_tet(const TetComplex& complex);
 
 /// @brief Delaunay tetrahedrization of all the complex's vertices, in biased random insertion and Hilbert order.
 ///

@@ -67,8 +67,9 @@ struct Four {
 };
 
 inline Vector load(const TetVertex& v) {
+  static_assert(alignof(TetVertex) == sizeof(Vector));
   Vector loaded;
-  __builtin_memcpy(&loaded, &v, sizeof loaded);
+  __builtin_memcpy(&loaded, __builtin_assume_aligned(&v, sizeof loaded), sizeof loaded);
   return loaded;
 }
 
@@ -131,6 +132,8 @@ inline FaceTests test_sides(const TetVertex* const v[4], const TetVertex& at) {
 
 /// @brief Test p against the faces of tet (v0 … v3) and the apexes w0 … w3 across them; lanes of faces that have no
 /// apex may be anything. `min_distance2` is the square of the distance below which an apex is close.
+/// Without kWithSides `seen`, `unseen` and `close` stay 0.
+template <bool kWithSides>
 inline FaceTests test_faces(const TetVertex* const v[4], const TetVertex* const w[4], const TetVertex& at,
                             double min_distance2) {
   using namespace lanes;
@@ -147,10 +150,12 @@ inline FaceTests test_faces(const TetVertex* const v[4], const TetVertex* const 
                         larger(c.mz, magnitude(apex.z)) * larger(largest(c.v.lift), apex.lift);
   const Vector bound = all(kInsphereFaceBound) * extent + all(detail::kTinyInsphere);
   FaceTests tests;
-  decide_sides(c, tests);
   tests.inside = bits(power < -bound);
   tests.outside = bits(power > bound);
-  tests.close = bits(apex.lift < all(min_distance2));
+  if (kWithSides) {
+    decide_sides(c, tests);
+    tests.close = bits(apex.lift < all(min_distance2));
+  }
   return tests;
 }
 

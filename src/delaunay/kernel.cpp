@@ -189,7 +189,7 @@ DelaunayKernel::Faces DelaunayKernel::look_across(TetIndex t, VertexIndex v, dou
     ghosts |= static_cast<unsigned>(w == kGhost) << f;
     apex[f] = w == kGhost ? corner[f] : &c_.vertex[w];
   }
-  FaceTests tests = test_faces(corner, apex, c_.vertex[v], min_distance * min_distance);
+  FaceTests tests = test_faces<true>(corner, apex, c_.vertex[v], min_distance * min_distance);
   counts.insphere_tests += 4;
   if ((tests.seen | tests.unseen) != kAllFaces)
     for (unsigned f = 0; f < 4; ++f) {
@@ -210,53 +210,87 @@ DelaunayKernel::Faces DelaunayKernel::look_across(TetIndex t, VertexIndex v, dou
           static_cast<std::uint8_t>(tests.close & ~ghosts)};
 }
 
+/// The usual case of look_across: all vertices real and explicit, all tests that matter decided by their bounds.
+/// @param apex  across the four faces
+/// @return false where it is not the usual case
+template <bool kConstrained>
+bool DelaunayKernel::look_across_fast(TetIndex t, const VertexIndex* apex, VertexIndex v, unsigned open,
+                                      double min_distance2, Faces& faces) {
+  const std::uint32_t* const n = &c_.node[4 * t];
+  if (n[3] == kGhost || std::max(std::max(apex[0], apex[1]), std::max(apex[2], apex[3])) == kGhost) return false;
+  const TetVertex* const all = c_.vertex.data();
+  const TetVertex* const corners[4] = {all + n[0], all + n[1], all + n[2], all + n[3]};
+  const TetVertex* const apexes[4] = {all + apex[0], all + apex[1], all + apex[2], all + apex[3]};
+  const FaceTests tests = test_faces<kConstrained>(corners, apexes, all[v], min_distance2);
+  if (((tests.inside | tests.outside) & open) != open) return false;
+  if (kConstrained && (tests.seen | tests.unseen) != kAllFaces) return false;
+  counts.insphere_tests += 4;
+  faces = {static_cast<std::uint8_t>(tests.inside), static_cast<std::uint8_t>(tests.seen),
+           static_cast<std::uint8_t>(tests.close)};
+  return true;
+}
+
 /// Breadth-first from `start`; leaves the cavity, the refs of its faces and the vertices it came to. Written without
 /// branches on the outcome of tests, which no processor can guess.
-DelaunayKernel::Insert DelaunayKernel::grow_cavity(TetIndex start, VertexIndex v, const Limits& limits) {
+template <bool kConstrained>
+DelaunayKernel::Insert DelaunayKernel::grow_cavity(TetIndex start, VertexIndex v, double min_distance) {
+  const double min_distance2 = min_distance * min_distance;
+  const bool is_exact = !c_.segment_points.empty();
   cavity_.clear();
   cavity_.push_back(start);
   seen_.clear();
   border_.clear();
   c_.flag[start] |= TetComplex::marked;
-  if (limits.constrained) {
+  is_star_shaped_ = true;
+  if (kConstrained) {
     reached_.assign(&c_.node[4 * start], &c_.node[4 * start] + 4);
     for (const VertexIndex w : reached_)
-      if (squared_length(c_.point(w) - c_.point(v)) < limits.min_distance * limits.min_distance)
-        return Insert::too_close;
+      if (squared_length(c_.point(w) - c_.point(v)) < min_distance2) return Insert::too_close;
   }
   for (std::size_t i = 0; i < cavity_.size(); ++i) {
     const TetIndex t = cavity_[i];
-    const Faces faces = look_across(t, v, limits.min_distance);
-    const unsigned walls = limits.constrained ? c_.flag[t] & kAllFaces : 0;
-    unsigned others = kAllFaces & ~walls, foreign = 0;
+    FaceRef outer[4];
+    VertexIndex apex[4];
+    unsigned marked = 0;
     for (unsigned f = 0; f < 4; ++f) {
-      const FaceRef outer = c_.neigh[4 * t + f];
-      others &= ~(static_cast<unsigned>((c_.flag[outer >> 2] & TetComplex::marked) != 0) << f);
-      foreign |= static_cast<unsigned>(!territory_.holds(c_.node[outer])) << f;
+      outer[f] = c_.neigh[4 * t + f];
+      apex[f] = c_.node[outer[f]];
+      marked |= static_cast<unsigned>((c_.flag[outer[f] >> 2] & TetComplex::marked) != 0) << f;
     }
-    if (foreign & others) return Insert::not_ours;
-    const unsigned grown = others & faces.inside;
-    if (faces.close & grown) return Insert::too_close;
-    add_to_cavity(t, grown);
-    add_to_border(t, (others & ~grown) | walls);
-    if (limits.constrained) {
+    const unsigned walls = kConstrained ? c_.flag[t] & kAllFaces : 0, open = kAllFaces & ~(marked | walls);
+    if (is_confined() && has_foreign(apex, open)) return Insert::not_ours;
+    Faces faces;
+    if (is_exact || !look_across_fast<kConstrained>(t, apex, v, open, min_distance2, faces))
+      faces = look_across(t, v, min_distance);
+    const unsigned grown = open & faces.inside, border = (open & ~grown) | walls;
+    cavity_.reserve_more(4);
+    border_.reserve_more(4);
+    for (unsigned f = 0; f < 4; ++f) {
+      const TetIndex next = outer[f] >> 2;
+      const unsigned bit = grown >> f & 1;
+      __builtin_prefetch(&c_.neigh[4 * next]);
+      cavity_.push_if(next, bit);
+      border_.push_if(4 * t + f, border >> f & 1);
+      c_.flag[next] = static_cast<std::uint16_t>(c_.flag[next] | bit * TetComplex::marked);
+    }
+    if (kConstrained) {
+      if (faces.close & grown) return Insert::too_close;
+      is_star_shaped_ &= !(border & ~faces.seen);
       seen_.push_back(faces.seen);
       for (unsigned f = 0; f < 4; ++f)
-        if (grown >> f & 1) reached_.push_back(c_.node[c_.neigh[4 * t + f]]);
+        if (grown >> f & 1) reached_.push_back(apex[f]);
     }
   }
   return Insert::done;
 }
 
-/// The tets across the faces `grown` of t.
-void DelaunayKernel::add_to_cavity(TetIndex t, unsigned grown) {
-  cavity_.reserve_more(4);
+bool DelaunayKernel::has_foreign(const VertexIndex* apex, unsigned faces) const {
+  unsigned foreign = 0;
   for (unsigned f = 0; f < 4; ++f) {
-    const TetIndex next = c_.neigh[4 * t + f] >> 2;
-    const unsigned bit = grown >> f & 1;
-    cavity_.push_if(next, bit);
-    c_.flag[next] = static_cast<std::uint16_t>(c_.flag[next] | bit * TetComplex::marked);
+    const VertexIndex v = apex[f] == kGhost ? 0 : apex[f];
+    foreign |= static_cast<unsigned>(apex[f] != kGhost && territory_.key[v] - territory_.first >= territory_.size) << f;
   }
+  return foreign & faces;
 }
 
 void DelaunayKernel::add_to_border(TetIndex t, unsigned faces) {
@@ -280,7 +314,7 @@ void DelaunayKernel::make_ball() {
   for (std::size_t i = 0; i < border_.size(); ++i) {
     const FaceRef ref = border_[i];
     const auto [x, y, z] = c_.face_nodes(ref);
-    ball_.faces[i] = {{x, y, z}, {0, 0, 0}, c_.neigh[ref], c_.is_constrained(ref)};
+    ball_.faces[i] = {{x, y, z}, c_.neigh[ref], {0, 0, 0}, c_.is_constrained(ref)};
   }
   ball_.number_vertices();
 }
@@ -347,11 +381,12 @@ DelaunayKernel::Insert DelaunayKernel::insert_into(TetIndex start, VertexIndex v
 }
 
 DelaunayKernel::Insert DelaunayKernel::insert_checked(VertexIndex v, TetIndex start, const Limits& limits) {
-  const Insert grown = grow_cavity(start, v, limits);
+  const Insert grown = limits.constrained ? grow_cavity<true>(start, v, limits.min_distance)
+                                          : grow_cavity<false>(start, v, limits.min_distance);
   if (grown != Insert::done) return grown;
   if (limits.constrained) {
     const std::size_t grown_size = cavity_.size();
-    if (!make_star_shaped(start)) return Insert::not_visible;
+    if (!is_star_shaped_ && !make_star_shaped(start)) return Insert::not_visible;
     make_ball();
     const bool is_whole = cavity_.size() == grown_size;
     if (is_whole ? !std::all_of(reached_.begin(), reached_.end(), [&](VertexIndex w) { return ball_.has_vertex(w); })
@@ -370,11 +405,10 @@ DelaunayKernel::Insert DelaunayKernel::insert_checked(VertexIndex v, TetIndex st
 
 /// One tet (v, x, z, y) a face (x, y, z): its face 0 looks outside. Slots of the cavity are used again.
 void DelaunayKernel::fill_cavity(VertexIndex v) {
-  FlatArray<Ball::Face>& faces = ball_.faces;
-  const std::size_t reused = std::min(cavity_.size(), faces.size());
+  const std::size_t reused = std::min(cavity_.size(), ball_.faces.size());
   const std::uint32_t colour = c_.region[cavity_[0]];
   made_.assign(cavity_.begin(), cavity_.begin() + reused);
-  while (made_.size() < faces.size()) made_.push_back(take_slot());
+  while (made_.size() < ball_.faces.size()) made_.push_back(take_slot());
   for (std::size_t i = reused; i < cavity_.size(); ++i) {
     if (!is_in_territory_) {
       c_.kill_tet(cavity_[i]);
@@ -383,26 +417,9 @@ void DelaunayKernel::fill_cavity(VertexIndex v) {
       slots_.push_back(cavity_[i]);
     }
   }
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const TetIndex t = made_[i];
-    Ball::Face& face = faces[i];
-    if (face.node[0] == kGhost || face.node[2] == kGhost) {  // the ghost becomes node 3
-      const std::ptrdiff_t first = face.node[0] == kGhost ? 2 : 1;
-      std::rotate(face.node, face.node + first, face.node + 3);
-      std::rotate(face.slot, face.slot + first, face.slot + 3);
-    }
-    const auto [x, y, z] = face.node;
-    c_.set_nodes(t, v, x, z, y);
-    c_.flag[t] = static_cast<std::uint16_t>(TetComplex::fresh | (face.constrained ? 1 : 0));
-    c_.region[t] = y == kGhost ? TetComplex::kOutside : colour;
-    c_.bond(4 * t, face.outer);
-    c_.vertex_tet[x] = t;
-    c_.vertex_tet[z] = t;
-    if (y != kGhost) c_.vertex_tet[y] = t;
-  }
+  ball_.write_tets(c_, v, made_, colour);
   c_.vertex_tet[v] = made_[0];
   last_tet = made_[0];
-  ball_.bond(c_, made_);
 }
 
 }  // namespace delfront

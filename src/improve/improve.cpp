@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "improve/operations.hpp"
 #include "improve/sharpness.hpp"
 
@@ -17,14 +18,16 @@ namespace {
 /// Swaps and smoothing aim this much higher than the goal, since they cost little; points are removed and added for
 /// the goal alone.
 constexpr double kStretch = 1.7;
-constexpr double kMaxWorkAngle = 32;   // degrees; a regular tet has 70, but few vertices can have only those
-constexpr double kCrowded = 0.4;       // of the wanted size: nearer neighbours than this are too many
-constexpr double kEnough = 1.5;        // times the quality worked for: good enough to look no further
-constexpr double kLeastScan = 1e-3;    // quality from which the search for the smallest angle starts
-constexpr double kFlat = 1;            // degrees: a cell below it is urgent ...
-constexpr double kUnexplained = 1e-2;  // ... if its quality is below that of the boundary there by this factor
-constexpr double kExplained = 0.25;    // of the boundary's quality: no more can be expected
-constexpr std::size_t kScansBetweenChecks = 1 << 16;
+constexpr double kMaxWorkAngle = 32;       // degrees; a regular tet has 70, but few vertices can have only those
+constexpr double kCrowded = 0.4;           // of the wanted size: nearer neighbours than this are too many
+constexpr double kEnough = 1.5;            // times the quality worked for: good enough to look no further
+constexpr double kLeastScan = 1e-3;        // quality from which the search for the smallest angle starts
+constexpr double kFlat = 1;                // degrees: a cell below it is urgent ...
+constexpr double kUnexplained = 1e-2;      // ... if its quality is below that of the boundary there by this factor
+constexpr double kFlatToRounding = 1e-13;  // squared sine of 2e-5 degrees
+constexpr std::size_t kFreeUrgentTries = 300, kFreeFlatTries = 2000, kUrgentTriesForOne = 5;
+constexpr double kExplained = 0.25;  // of the boundary's quality: no more can be expected
+constexpr std::size_t kScanGrain = 1 << 15;
 
 /// One kind of operation, over the list of bad tets, in each pass from `first_pass` on.
 ///
@@ -51,6 +54,7 @@ class Improver {
   ImproveReport run();
 
  private:
+  std::vector<TetIndex> find_below(double bound, TetIndex first, TetIndex last) const;
   void scan(double bound);
   bool is_below(TetIndex t, double bound) const {
     return !c_.is_dead(t) && !c_.is_ghost(t) && c_.region[t] != TetComplex::kOutside && operations_.quality(t) < bound;
@@ -97,12 +101,12 @@ class Improver {
   std::vector<std::uint32_t> vertex_pass_;   ///< the last pass that changed a tet of this vertex
   std::vector<std::uint32_t> vertex_sweep_;  ///< the last sweep that visited this vertex
   std::uint32_t sweep_ = 0;
+  std::size_t urgent_tries_ = 0, urgent_done_ = 0;
 };
 
-/// Tets below a quality, into bad_.
-void Improver::scan(double bound) {
-  bad_.clear();
-  const std::size_t slots = c_.num_slots();
+/// Tets [first, last) below a quality, four at a time.
+std::vector<TetIndex> Improver::find_below(double bound, TetIndex first, TetIndex last) const {
+  std::vector<TetIndex> found;
   FaceBlock block{};
   Lanes apex[3]{};
   TetIndex waiting[kLanes];
@@ -110,11 +114,10 @@ void Improver::scan(double bound) {
   const auto flush = [&] {
     const Lanes q = measure_block(block, apex);
     for (std::size_t i = 0; i < lane; ++i)
-      if (q[i] < bound) bad_.push_back(waiting[i]);
+      if (q[i] < bound) found.push_back(waiting[i]);
     lane = 0;
   };
-  for (TetIndex t = 0; t < slots; ++t) {
-    if (t % kScansBetweenChecks == 0) context_.progress("improve", t, slots, "cells");
+  for (TetIndex t = first; t < last; ++t) {
     if (c_.is_dead(t) || c_.is_ghost(t) || c_.region[t] == TetComplex::kOutside) continue;
     const std::uint32_t* n = &c_.node[4 * t];
     for (unsigned i = 0; i < 4; ++i) {
@@ -129,6 +132,19 @@ void Improver::scan(double bound) {
     if (lane == kLanes) flush();
   }
   flush();
+  return found;
+}
+
+/// Tets below a quality, into bad_.
+void Improver::scan(double bound) {
+  const std::size_t slots = c_.num_slots();
+  context_.progress("improve", 0, slots, "cells");
+  std::vector<std::vector<TetIndex>> parts((slots + kScanGrain - 1) / kScanGrain);
+  parallel_ranges(context_.threads, slots, kScanGrain, [&](std::size_t first, std::size_t last) {
+    parts[first / kScanGrain] = find_below(bound, static_cast<TetIndex>(first), static_cast<TetIndex>(last));
+  });
+  bad_.clear();
+  for (const std::vector<TetIndex>& part : parts) bad_.insert(bad_.end(), part.begin(), part.end());
 }
 
 bool Improver::is_changed(bool changed) {
@@ -207,15 +223,22 @@ bool Improver::is_explained(TetIndex t, double share) const {
   return operations_.quality(t) >= share * sharpest;
 }
 
-/// A cell of almost no volume that no sharp place of the boundary explains.
+/// A cell of almost no volume that no sharp place of the boundary explains. Narrow gaps make many of those that nothing
+/// can mend, which is noticed by the successes.
 bool Improver::is_urgent(TetIndex t) const {
+  const bool is_flat = is_below(t, kFlatToRounding);
+  const std::size_t free_tries = is_flat ? kFreeFlatTries : kFreeUrgentTries;
+  if (urgent_tries_ > free_tries + kUrgentTriesForOne * urgent_done_) return false;
   return is_below(t, quality_of_angle(kFlat)) && !is_explained(t, kUnexplained);
 }
 
 bool Improver::insert(TetIndex t) {
-  if (!is_changed(operations_.insert(t, goal_, enough_, is_urgent(t)))) return false;
-  ++report_.points_added;
-  return true;
+  const bool urgent = is_urgent(t);
+  const bool done = is_changed(operations_.insert(t, goal_, enough_, urgent));
+  urgent_tries_ += urgent ? 1 : 0;
+  urgent_done_ += urgent && done ? 1 : 0;
+  report_.points_added += done ? 1 : 0;
+  return done;
 }
 
 /// Apply an operation to every tet of bad_ that is still bad; afterwards bad_ holds what is left and what came new.
@@ -244,7 +267,7 @@ void Improver::run_sweep(Sweep& sweep, Operation operation) {
       sweep.resume = t;
     }
     sweep.skips_explained = true;
-    tried = 0;
+    tried = done = 0;
   }
   std::sort(next_.begin(), next_.end());
   next_.erase(std::unique(next_.begin(), next_.end()), next_.end());

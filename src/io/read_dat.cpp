@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coordinates of airfoil sections, one "x y" a line, as loops of lines in the plane. A name may stand before them. Selig's
-// order runs from the trailing edge over the upper side to the nose and back below; Lednicer's has two counts, then the
-// upper and the lower side, each from the nose: it is turned into Selig's. A line of two numbers from 999 on begins the
-// next element. A trailing edge that is open is closed by a line.
+// Coordinates of airfoil sections, one "x y" a line, as loops of lines in the plane. A name may stand before them.
+// Selig's order runs from the trailing edge over the upper side to the nose and back below; Lednicer's has two counts,
+// then the upper and the lower side, each from the nose: it is turned into Selig's. A line of two numbers from 999 on
+// begins the next element. A trailing edge that is open is closed by a line.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace delfront {
 namespace {
 
 constexpr double kNextElement = 999;
-constexpr double kSharpTurn = -0.9;        ///< cosine: a turn of more than 154 degrees, which only an end may have
+constexpr double kSharpTurn = -0.9;  ///< cosine: a turn of more than 154 degrees
 constexpr std::size_t kMostWarnings = 3;
 constexpr double kWideTrailingEdge = 0.05;  ///< of the section's length: an opening worth a word
 
@@ -93,8 +93,7 @@ class DatReader {
     if (num_upper_ > 0) turn_into_selig();
     drop_repeated();
     if (points_.empty()) return;
-    if (points_.size() < 3)
-      cursor_.fail_at(points_.front().position, "an element of fewer than three points");
+    if (points_.size() < 3) cursor_.fail_at(points_.front().position, "an element of fewer than three points");
     warn_of_turns();
     const std::size_t first = mesh_.points.size(), n = points_.size();
     mesh_.groups.push_back({"", 1, "", false});
@@ -128,24 +127,30 @@ class DatReader {
     points_.swap(kept);
   }
 
-  /// Sharp turns but at the ends: points that are swapped or wrong; a wide gap that the closing line spans.
+  bool turns_back(std::size_t i) const {
+    if (i == 0 || i + 1 >= points_.size()) return false;
+    const Coordinate &a = points_[i - 1], &b = points_[i], &c = points_[i + 1];
+    const double ux = b.x - a.x, uy = b.y - a.y, vx = c.x - b.x, vy = c.y - b.y;
+    return ux * vx + uy * vy < kSharpTurn * std::hypot(ux, uy) * std::hypot(vx, vy);
+  }
+
+  /// One sharp turn may be a nose; two in a row are points that are swapped. And a wide gap that the closing line
+  /// spans.
   void warn_of_turns() const {
     double low = points_[0].x, high = points_[0].x;
     std::size_t turns = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      low = std::min(low, points_[i].x);
-      high = std::max(high, points_[i].x);
-      if (i == 0 || i + 1 == points_.size()) continue;
-      const Coordinate &a = points_[i - 1], &b = points_[i], &c = points_[i + 1];
-      const double ux = b.x - a.x, uy = b.y - a.y, vx = c.x - b.x, vy = c.y - b.y;
-      if (ux * vx + uy * vy >= kSharpTurn * std::hypot(ux, uy) * std::hypot(vx, vy)) continue;
-      if (++turns <= kMostWarnings)
+      const Coordinate& p = points_[i];
+      low = std::min(low, p.x);
+      high = std::max(high, p.x);
+      if (turns_back(i) && turns_back(i + 1) && ++turns <= kMostWarnings)
         context_.warn(fmt::format("{}: line {}: the outline turns back at ({:g}, {:g}); are points in the wrong order?",
-                                  cursor_.path(), cursor_.line_of(b.position), b.x, b.y));
+                                  cursor_.path(), cursor_.line_of(p.position), p.x, p.y));
     }
     const double gap = std::hypot(points_.front().x - points_.back().x, points_.front().y - points_.back().y);
     if (gap > kWideTrailingEdge * (high - low))
-      context_.warn(fmt::format("{}: the outline is open by {:g}; it is closed by a straight line", cursor_.path(), gap));
+      context_.warn(
+          fmt::format("{}: the outline is open by {:g}; it is closed by a straight line", cursor_.path(), gap));
   }
 
   Cursor cursor_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangle's .poly in the plane with its points inside: segments (their marker is the group), seeds of holes and of
-// regions. Seeds become points of groups of dimension 0 and kind "hole" or "region"; the field "h" holds the size that a
-// region's largest area asks for. The group of holes is there even when it is empty: in these files, only seeds make
+// regions. Seeds become points of groups of dimension 0 and kind "hole" or "region"; the field "h" holds the size that
+// a region's largest area asks for. The group of holes is there even when it is empty: in these files, only seeds make
 // holes.
 #include <fmt/format.h>
 

@@ -62,26 +62,6 @@ void measure_dihedrals(const CellShape& shape, std::span<const FacetGeometry> fa
   quality.max_angle = degrees_of_cosine(lowest);
 }
 
-void measure_tet_ratios(const Point* p, std::span<const FacetGeometry> facets, double volume, CellQuality& quality) {
-  double sum = 0, longest = 0, area = 0;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < i; ++j) {
-      const double squared = squared_length(p[i] - p[j]);
-      sum += squared;
-      longest = std::max(longest, squared);
-    }
-  for (const FacetGeometry& facet : facets) area += length(facet.area);
-  const double positive = std::max(volume, 0.0);
-  const double root = std::cbrt(3 * positive);
-  const double inradius = 3 * positive / std::max(area, kTiny);
-  const Point a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
-  const Point offset =
-      squared_length(a) * cross(b, c) + squared_length(b) * cross(c, a) + squared_length(c) * cross(a, b);
-  quality.mean_ratio = 12 * root * root / std::max(sum, kTiny);
-  quality.radius_ratio = 3 * inradius * 12 * positive / std::max(length(offset), kTiny);
-  quality.aspect_ratio = std::sqrt(longest) / std::max(2 * std::sqrt(6.0) * inradius, kTiny);
-}
-
 CellQuality measure_polygon(std::span<const Point> p) {
   const std::size_t n = p.size();
   CellQuality quality{180, 0, 0, 0, 0};

@@ -32,9 +32,6 @@ struct CellQuality {
 };
 /// @brief Smallest and largest angle between neighbouring facets, inside, for any 3-D cell.
 void measure_dihedrals(const CellShape& shape, std::span<const FacetGeometry> facets, CellQuality& quality);
-/// @brief Ratios of a tetrahedron (see measure_quality).
-void measure_tet_ratios(const Point* corners, std::span<const FacetGeometry> facets, double volume,
-                        CellQuality& quality);
 /// @brief Corner angles of a polygon in space, and of a triangle the ratios too.
 CellQuality measure_polygon(std::span<const Point> corners);
 

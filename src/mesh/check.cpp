@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <numeric>
+#include <tuple>
 
 #include "delfront/grid_check.hpp"
 #include "fmt/format.h"
@@ -111,6 +112,7 @@ class Checker {
   void check_cell_corners(const CellRange::Part& part, std::size_t cell);
   int corner_sign(const VertexId* vertices, const std::array<int, 4>& corner) const;
   void check_facets();
+  void check_facets(const FacetSweep& sweep, std::size_t bin, FacetSweep::Scratch& scratch);
   void check_facet(std::span<const HalfFacet> sides, std::span<const HalfFacet> stored);
   void check_boundary_edges();
 
@@ -279,9 +281,29 @@ int Checker::corner_sign(const VertexId* vertices, const std::array<int, 4>& cor
 void Checker::check_facets() {
   for (const CellRange::Part& part : cells_.parts())
     if (num_vertices(part.block->type) == 0) return;  // said as unchecked_cells
-  const std::vector<HalfFacet> table = build_facet_table(mesh_, cells_, stored_);
-  for_each_facet(table, [&](auto sides, auto stored) { check_facet(sides, stored); });
+  const FacetSweep sweep(mesh_, cells_, stored_, 1);
+  FacetSweep::Scratch scratch;
+  for (std::size_t bin = 0; bin < sweep.num_bins(); ++bin) check_facets(sweep, bin, scratch);
   check_boundary_edges();
+}
+
+/// What is not plainly right is looked at in the order of its vertices, in which it is reported.
+void Checker::check_facets(const FacetSweep& sweep, std::size_t bin, FacetSweep::Scratch& scratch) {
+  struct Facet {
+    std::vector<HalfFacet> halves;
+    std::size_t num_sides;
+  };
+  std::vector<Facet> facets;
+  sweep.for_each_facet(bin, scratch, [&](auto sides, auto stored) {
+    if (sides.size() == 2 && stored.empty() && sides[0].is_forward != sides[1].is_forward) return;
+    facets.push_back({{sides.begin(), stored.end()}, sides.size()});
+  });
+  std::sort(facets.begin(), facets.end(), [](const Facet& p, const Facet& q) {
+    const HalfFacet &f = p.halves[0], &g = q.halves[0];
+    return std::tie(f.a, f.b, f.c, f.d) < std::tie(g.a, g.b, g.c, g.d);
+  });
+  for (const auto& [halves, num_sides] : facets)
+    check_facet(std::span(halves).first(num_sides), std::span(halves).subspan(num_sides));
 }
 
 void Checker::check_facet(std::span<const HalfFacet> sides, std::span<const HalfFacet> stored) {

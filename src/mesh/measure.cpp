@@ -21,54 +21,65 @@ constexpr MeasureKind kKinds[kNumMeasures] = {
 
 const MeasureKind& kind_of(MeasureId id) { return kKinds[static_cast<std::size_t>(id)]; }
 
-MeasureBuilder::MeasureBuilder(MeasureId id) {
+MeasureBuilder::MeasureBuilder(MeasureId id) : id_(id), worst_is_low_(kind_of(id).worst_is_low) {
   const MeasureKind& kind = kind_of(id);
-  measure_.name = kind.name;
-  measure_.unit = kind.unit;
-  measure_.worst_is_low = kind.worst_is_low;
-  measure_.min = std::numeric_limits<double>::infinity();
-  measure_.max = -measure_.min;
-  measure_.histogram.assign(kind.bins, 0);
+  min_ = std::numeric_limits<double>::infinity();
+  max_ = -min_;
+  worst_limit_ = worst_is_low_ ? min_ : max_;
+  bins_.assign(kind.bins, 0);
+  last_bin_ = static_cast<double>(kind.bins - 1);
   set_range(kind.histogram_low, kind.histogram_high);
 }
 
 void MeasureBuilder::set_range(double low, double high) {
-  measure_.histogram_low = low;
-  measure_.histogram_high = high;
-  bin_scale_ = high > low ? static_cast<double>(measure_.histogram.size()) / (high - low) : 0;
+  low_ = low;
+  high_ = high;
+  bin_scale_ = high > low ? static_cast<double>(bins_.size()) / (high - low) : 0;
 }
 
-void MeasureBuilder::add(double value, std::uint32_t id0, std::uint32_t id1) {
-  ++count_;
-  sum_ += value;
-  measure_.min = std::min(measure_.min, value);
-  measure_.max = std::max(measure_.max, value);
-  const double last = static_cast<double>(measure_.histogram.size() - 1);
-  const double bin = (value - measure_.histogram_low) * bin_scale_;
-  ++measure_.histogram[bin > 0 ? static_cast<std::size_t>(std::min(bin, last)) : 0];
-  const bool is_worse =
-      worst_.size() < kNumWorst || (measure_.worst_is_low ? value < worst_.back().value : value > worst_.back().value);
-  if (is_worse) keep_worst(value, id0, id1);
+bool MeasureBuilder::is_worse(const Worst& a, const Worst& b) const {
+  if (a.value != b.value) return worst_is_low_ ? a.value < b.value : a.value > b.value;
+  return a.id0 != b.id0 ? a.id0 < b.id0 : a.id1 < b.id1;
 }
 
-void MeasureBuilder::keep_worst(double value, std::uint32_t id0, std::uint32_t id1) {
-  const auto place = std::find_if(worst_.begin(), worst_.end(), [&](const Worst& other) {
-    return measure_.worst_is_low ? value < other.value : value > other.value;
-  });
-  worst_.insert(place, {value, id0, id1});
+void MeasureBuilder::keep_worst(const Worst& worst) {
+  const auto place =
+      std::find_if(worst_.begin(), worst_.end(), [&](const Worst& other) { return is_worse(worst, other); });
+  worst_.insert(place, worst);
   if (worst_.size() > kNumWorst) worst_.pop_back();
+  if (worst_.size() == kNumWorst) worst_limit_ = worst_.back().value;
 }
 
-Measure MeasureBuilder::take() {
-  if (count_ == 0) measure_.min = measure_.max = 0;
-  measure_.mean = count_ > 0 ? sum_ / static_cast<double>(count_) : 0;
+void MeasureBuilder::merge(const MeasureBuilder& other) {
+  count_ += other.count_;
+  sum_ += other.sum_;
+  min_ = std::min(min_, other.min_);
+  max_ = std::max(max_, other.max_);
+  for (std::size_t i = 0; i < bins_.size(); ++i) bins_[i] += other.bins_[i];
+  for (const Worst& worst : other.worst_) keep_worst(worst);
+}
+
+Measure MeasureBuilder::take() const {
+  const MeasureKind& kind = kind_of(id_);
+  Measure measure;
+  measure.name = kind.name;
+  measure.unit = kind.unit;
+  measure.worst_is_low = worst_is_low_;
+  measure.histogram = bins_;
+  measure.histogram_low = low_;
+  measure.histogram_high = high_;
+  if (count_ > 0) {
+    measure.min = min_;
+    measure.max = max_;
+    measure.mean = sum_ / static_cast<double>(count_);
+  }
   for (const Worst& worst : worst_) {
     Place place{{}, {worst.id0}};
     if (worst.id1 != kNoId) place.ids.push_back(worst.id1);
-    measure_.worst.push_back(std::move(place));
-    measure_.worst_values.push_back(worst.value);
+    measure.worst.push_back(std::move(place));
+    measure.worst_values.push_back(worst.value);
   }
-  return std::move(measure_);
+  return measure;
 }
 
 }  // namespace delfront

@@ -36,17 +36,28 @@ enum class MeasureId : std::uint8_t {
 inline constexpr std::size_t kNumMeasures = 12;
 const MeasureKind& kind_of(MeasureId id);
 
-/// @brief Takes the values of one measure one by one; keeps sums, histogram and the worst ten (earlier ones win ties).
+/// @brief Takes the values of one measure one by one; keeps sums, histogram and the worst ten (of equal ones those with
+/// the lowest ids, so that only the rounding of the sum depends on the order).
 class MeasureBuilder {
  public:
   explicit MeasureBuilder(MeasureId id);
   /// @brief Other ends for the histogram, before the first value.
   void set_range(double low, double high);
   /// @param id0, id1  of the cell, or of the two cells or points
-  void add(double value, std::uint32_t id0, std::uint32_t id1 = kNoId);
+  void add(double value, std::uint32_t id0, std::uint32_t id1 = kNoId) {
+    ++count_;
+    sum_ += value;
+    min_ = value < min_ ? value : min_;
+    max_ = value > max_ ? value : max_;
+    const double bin = (value - low_) * bin_scale_;
+    ++bins_[bin > 0 ? static_cast<std::size_t>(bin < last_bin_ ? bin : last_bin_) : 0];
+    if (worst_is_low_ ? value <= worst_limit_ : value >= worst_limit_) keep_worst({value, id0, id1});
+  }
+  /// @brief Take over what another builder of the same measure and range was given.
+  void merge(const MeasureBuilder& other);
   bool is_empty() const { return count_ == 0; }
   /// @brief The measure; `at` of the worst is left for the caller to fill in.
-  Measure take();
+  Measure take() const;
 
   static constexpr std::uint32_t kNoId = 0xffffffffu;
 
@@ -55,11 +66,16 @@ class MeasureBuilder {
     double value;
     std::uint32_t id0, id1;
   };
-  void keep_worst(double value, std::uint32_t id0, std::uint32_t id1);
+  bool is_worse(const Worst& a, const Worst& b) const;
+  void keep_worst(const Worst& worst);
 
-  Measure measure_;
+  MeasureId id_;
+  bool worst_is_low_;
   std::size_t count_ = 0;
-  double sum_ = 0, bin_scale_ = 0;
+  double sum_ = 0, min_, max_;
+  double low_ = 0, high_ = 0, bin_scale_ = 0, last_bin_ = 0;
+  double worst_limit_;  ///< what is better than this is not among the worst
+  std::vector<std::size_t> bins_;
   std::vector<Worst> worst_;
 };
 

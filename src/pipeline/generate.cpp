@@ -3,8 +3,12 @@
 #include "delfront/generate.hpp"
 
 #include <fmt/format.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <algorithm>
+#include <memory>
 
 #include "delfront/size_field.hpp"
 #include "improve/improve.hpp"
@@ -72,6 +76,13 @@ void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
   for (std::size_t v = 0; v < sizes.size(); ++v) complex.vertex[v].h = sizes[v];
 }
 
+/// Scratch of a stage that the allocator keeps would add to the peak of the next one.
+void give_back_free_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 }  // namespace
 
 Outcome generate(Model model, const Options& options, Context& context) {
@@ -82,12 +93,15 @@ Outcome generate(Model model, const Options& options, Context& context) {
   refuse_invalid(report.surface);
   BoundaryGrid grid =
       tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
-  const auto size = build_size_field(grid.complex, options.size, context);
+  std::unique_ptr<SizeField> size = build_size_field(grid.complex, options.size, context);
   set_vertex_sizes(grid.complex, *size);
   report.refine = refine_complex(grid.complex, *size, options.volume, context);
+  give_back_free_memory();
   if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
-  outcome.mesh = to_mesh(grid, model);
-  grid = {};
+  size.reset();
+  give_back_free_memory();
+  outcome.mesh = to_mesh(std::move(grid), model, context.threads);
+  give_back_free_memory();
   const StageTimer timer(context, "measure");
   report.quality = measure_quality(outcome.mesh, context);
   return outcome;

@@ -302,7 +302,8 @@ std::vector<OptionRow> build_table() {
       "improve (write nothing), write",
       [](auto& o) -> auto& { return o.stop_after; }, kStages));
   add(texts_row(
-      "input.files", "", "", "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …; or lines in the plane: DAT, POLY, …",
+      "input.files", "", "",
+      "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …; or lines in the plane: DAT, POLY, …",
       [](auto& o) -> auto& { return o.input.files; }));
   add(text_row(
       "input.units", "--units", "UNIT", "unit of the coordinates, where lengths in m, mm, in, ft are used",
@@ -456,7 +457,8 @@ static void set_farfield(Options& options, const std::string& text) {
 const std::vector<Shorthand>& shorthand_table() {
   static const std::vector<Shorthand> table = {
       {"--farfield", "SHAPE:SIZE",
-       "outer boundary around the body: sphere:20c, circle:20c (2-D), box:10c (c = the body's longest side), or box:xmin,…,zmax; patches "
+       "outer boundary around the body: sphere:20c, circle:20c (2-D), box:10c (c = the body's longest side), or "
+       "box:xmin,…,zmax; patches "
        "of "
        "the input get the kind wall unless they have one",
        true, set_farfield},

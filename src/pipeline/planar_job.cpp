@@ -55,9 +55,11 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
   if (has_far_field) {
     for (PlanarCurve& curve : domain.curves)
       if (curve.kind.empty()) curve.kind = "wall";
-  } else if (options.domain.keep == "outside" && std::none_of(domain.curves.begin(), domain.curves.end(), is_far_field)) {
+  } else if (options.domain.keep == "outside" &&
+             std::none_of(domain.curves.begin(), domain.curves.end(), is_far_field)) {
     throw UsageError(
-        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield circle:50c, or "
+        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield circle:50c, "
+        "or "
         "give the outer curve the kind farfield ([boundaries.NAME])");
   }
   return far_field;
@@ -66,9 +68,10 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
 void check_planar_outputs(const Options& options) {
   for (const std::string& path : options.output.files)
     if (format_of(path, options.output.format, true).name == "openfoam")
-      throw UsageError(fmt::format("{}: an OpenFOAM case holds grids of volume cells, and the input lies in the plane; "
-                                   "write su2, vtu, msh or mesh, or extrude the grid by one cell",
-                                   path));
+      throw UsageError(
+          fmt::format("{}: an OpenFOAM case holds grids of volume cells, and the input lies in the plane; "
+                      "write su2, vtu, msh or mesh, or extrude the grid by one cell",
+                      path));
 }
 
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context) {

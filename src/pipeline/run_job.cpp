@@ -286,9 +286,14 @@ void work_in_the_plane(Run& run) {
   run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
   resolve_lengths(run.options, run.result.scale);
   const CurveId far_field = set_curves(domain, run.options, run.result.scale, run.context);
-  if (run.options.stop_after == "surface" || run.options.volume.method == "none") {
+  if (run.options.stop_after == "geometry" || run.options.stop_after == "surface" ||
+      run.options.volume.method == "none") {
     run.result.mesh = line_mesh(domain);
-    return write_outputs(run);
+    run.result.report.surface.findings = check_planar_domain(domain, run.context);
+    if (run.options.stop_after != "geometry") return write_outputs(run);
+    if (has_errors(run.result.report.surface.findings))
+      throw InputError("the lines cannot be gridded; see the findings");
+    return;
   }
   if (run.options.stop_after == "volume") run.options.improve.enabled = false;
   Outcome outcome = generate_in_far_field(domain, far_field, run.options, run.context);

@@ -49,9 +49,11 @@ class SegmentInserter {
       const VertexIndex t = c_.target(ref), u = c_.apex(ref);
       if (t == b) return {b, kNoTri};
       const int side = t == kInfinity ? 0 : orient2d(at(a), at(b), at(t));
-      if (t != kInfinity && side == 0 && dot_sign({at(a).x, at(a).y, 0}, {at(b).x, at(b).y, 0}, {at(t).x, at(t).y, 0}) > 0)
+      if (t != kInfinity && side == 0 &&
+          dot_sign({at(a).x, at(a).y, 0}, {at(b).x, at(b).y, 0}, {at(t).x, at(t).y, 0}) > 0)
         return {t, kNoTri};
-      if (side < 0 && u != kInfinity && orient2d(at(a), at(b), at(u)) > 0) return {kInfinity, TriComplex::next_edge(ref)};
+      if (side < 0 && u != kInfinity && orient2d(at(a), at(b), at(u)) > 0)
+        return {kInfinity, TriComplex::next_edge(ref)};
       ref = c_.turn_left(ref);
     } while (ref != first);
     DELFRONT_CHECK(false && "a segment leaves its first vertex through a triangle");

@@ -14,8 +14,9 @@ constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates wa
 void check_points(std::span<const Point2> points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!(std::abs(points[i].x) <= kLargest && std::abs(points[i].y) <= kLargest))
-      throw InputError(fmt::format("point {} at ({:g}, {:g}) is not finite, or over 2^100", i, points[i].x, points[i].y),
-                       {{{points[i].x, points[i].y, 0}, {static_cast<std::uint32_t>(i)}}});
+      throw InputError(
+          fmt::format("point {} at ({:g}, {:g}) is not finite, or over 2^100", i, points[i].x, points[i].y),
+          {{{points[i].x, points[i].y, 0}, {static_cast<std::uint32_t>(i)}}});
 }
 
 void collect_hull(const TriComplex& complex, Triangulation2& result) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A domain from lines in the plane: points welded by exact equality as surfaces' are, groups as curves, seeds from groups
-// of points.
+// A domain from lines in the plane: points welded by exact equality as surfaces' are, groups as curves, seeds from
+// groups of points.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,9 +37,9 @@ class DomainBuilder {
     for (std::size_t i = 0; i < input.mesh.points.size(); ++i) {
       const Point p = input.mesh.points[VertexId(i)];
       if (is_finite(p) && p.z == 0) continue;
-      throw InputError(fmt::format("{}: point {} at ({:g}, {:g}, {:g}) is not in the plane z = 0", input.stem, i, p.x,
-                                   p.y, p.z),
-                       {{p, {static_cast<std::uint32_t>(i)}}});
+      throw InputError(
+          fmt::format("{}: point {} at ({:g}, {:g}, {:g}) is not in the plane z = 0", input.stem, i, p.x, p.y, p.z),
+          {{p, {static_cast<std::uint32_t>(i)}}});
     }
   }
 

@@ -80,7 +80,8 @@ EdgeRef split_edge(TriComplex& c, EdgeRef ref, VertexIndex m) {
   const EdgeRef b_up = c.across(TriComplex::next_edge(ref)), up_a = c.across(TriComplex::previous_edge(ref));
   const EdgeRef a_down = c.across(TriComplex::next_edge(other)), down_b = c.across(TriComplex::previous_edge(other));
   const auto bit = [&](EdgeRef r, unsigned e) { return c.is_constrained(r) ? 1u << e : 0u; };
-  const std::uint32_t f_b_up = bit(b_up, 0), f_up_a = bit(up_a, 1), f_a_down = bit(a_down, 0), f_down_b = bit(down_b, 1);
+  const std::uint32_t f_b_up = bit(b_up, 0), f_up_a = bit(up_a, 1), f_a_down = bit(a_down, 0),
+                      f_down_b = bit(down_b, 1);
   const auto make = [&](TriIndex slot, Corners n, std::uint32_t region, std::uint32_t flags) {
     c.tri[slot] = {{n[0], n[1], n[2]}, {kNoTri, kNoTri, kNoTri}, region, flags | 4};
   };

@@ -92,8 +92,8 @@ CurveId add_far_field(PlanarDomain& domain, const EncloseOptions& options, const
   const Point2 centre{box.centre().x, box.centre().y};
   const double size = is_box && options.corners ? 0 : to_model_units(options.size, scale);
   if (!(is_box && options.corners) && !(size > 0 && std::isfinite(size)))
-    throw UsageError(fmt::format("enclose: the {} is {:g}; it must be positive and finite",
-                                 is_box ? "half side" : "radius", size));
+    throw UsageError(
+        fmt::format("enclose: the {} is {:g}; it must be positive and finite", is_box ? "half side" : "radius", size));
   Point2 low{centre.x - size, centre.y - size}, high{centre.x + size, centre.y + size};
   if (is_box && options.corners) {
     const auto& c = *options.corners;

@@ -6,8 +6,8 @@ namespace delfront {
 
 /// @brief Add an outer boundary around a domain: a circle ("circle" or "sphere", options.size its radius) or a box.
 ///
-/// Its centre is that of the domain's box, unless the corners are given (z is not used). Its segments are about options.h
-/// long; by default as long as cells are that have grown there from the body's segments.
+/// Its centre is that of the domain's box, unless the corners are given (z is not used). Its segments are about
+/// options.h long; by default as long as cells are that have grown there from the body's segments.
 /// @param scale  of the input, for lengths in % and c
 /// @return the new curve, of kind "farfield"; invalid for shape "none"
 /// @throws UsageError  a length that is not positive

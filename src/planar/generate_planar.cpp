@@ -33,7 +33,8 @@ void check_domain(const PlanarDomain& domain) {
     throw InputError(fmt::format("{} segments, but {} curves of segments: one each is needed", domain.segments.size(),
                                  domain.curve_of_segment.size()));
   for (std::size_t i = 0; i < domain.segments.size(); ++i)
-    if (domain.segments[i][0].index() >= domain.points.size() || domain.segments[i][1].index() >= domain.points.size() ||
+    if (domain.segments[i][0].index() >= domain.points.size() ||
+        domain.segments[i][1].index() >= domain.points.size() ||
         domain.curve_of_segment[i].index() >= domain.curves.size())
       throw InputError(fmt::format("segment {} names a point or a curve that does not exist", i));
 }
@@ -139,6 +140,22 @@ void set_vertex_sizes(TriComplex& complex, const SizeField& field) {
 }
 
 }  // namespace
+
+std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& context) {
+  check_floating_point_mode();
+  std::vector<Finding> findings;
+  try {
+    check_domain(domain);
+    DomainOptions all;
+    all.keep = "all";
+    for (const std::string& warning : triangulate(domain, all, context).warnings)
+      findings.push_back({"lines", Severity::warning, 1, warning, "", {}});
+  } catch (const InputError& e) {
+    findings.push_back(
+        {"invalid_lines", Severity::error, std::max<std::size_t>(e.places.size(), 1), e.what(), "", e.places});
+  }
+  return findings;
+}
 
 Outcome generate_planar(const PlanarDomain& domain, const Options& options, Context& context, const SizeField* size) {
   check_floating_point_mode();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Passes over the triangles below the goal. Each tries, until something raises the smallest angle of what it touches:
-// moving a corner, inserting a point in its cavity, taking a corner away. What changed is looked at again, and the edges
-// around it are made Delaunay by flips, which never lower the smallest angle either.
+// moving a corner, inserting a point in its cavity, taking a corner away. What changed is looked at again, and the
+// edges around it are made Delaunay by flips, which never lower the smallest angle either.
 #include "planar/improve.hpp"
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace delfront {
 
 namespace {
 
-constexpr double kGain = 1.0001;        ///< of the squared sine: smaller gains are none
-constexpr double kNearest = 0.4;        ///< of the size: no point is put nearer to another
+constexpr double kGain = 1.0001;  ///< of the squared sine: smaller gains are none
+constexpr double kNearest = 0.4;  ///< of the size: no point is put nearer to another
 constexpr std::size_t kLargestStar = 24;
 constexpr std::size_t kTrianglesPerCancelCheck = 4096;
 constexpr int kSearchSteps = 6;
@@ -35,8 +35,8 @@ class Improvement {
   ImproveReport run() {
     c_.index_vertices();
     kernel_.last_tri = 0;
-    std::vector<TriIndex> bad = all_bad();
-    report_.min_dihedral_before_deg = worst_deg();
+    std::vector<TriIndex> bad = all_bad(report_.min_dihedral_before_deg);
+    std::erase_if(bad, [&](TriIndex t) { return is_at_sharp_corner(t); });
     for (int pass = 0; pass < options_.max_passes && !bad.empty(); ++pass) {
       touched_.clear();
       std::size_t done = 0;
@@ -51,10 +51,9 @@ class Improvement {
       bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
       std::erase_if(bad, [&](TriIndex t) { return !is_bad(t); });
     }
-    bad = all_bad(true);
-    report_.min_dihedral_after_deg = worst_deg();
+    bad = all_bad(report_.min_dihedral_after_deg);
     report_.below_goal = bad.size();
-    for (const TriIndex t : bad) report_.below_goal_forced += is_at_sharp_corner(t);
+    for (const TriIndex t : bad) report_.below_goal_forced += is_at_sharp_corner(t) || has_given_corners(t);
     return report_;
   }
 
@@ -79,18 +78,22 @@ class Improvement {
     return false;
   }
 
-  std::vector<TriIndex> all_bad(bool with_forced = false) const {
-    std::vector<TriIndex> bad;
-    for (TriIndex t = 0; t < c_.tri.size(); ++t)
-      if (is_inside(t) && quality(t) < goal_ && (with_forced || !is_at_sharp_corner(t))) bad.push_back(t);
-    return bad;
+  bool has_given_corners(TriIndex t) const {
+    const VertexIndex* n = c_.tri[t].node;
+    return n[0] < options_.first_free && n[1] < options_.first_free && n[2] < options_.first_free;
   }
 
-  double worst_deg() const {
+  std::vector<TriIndex> all_bad(double& worst_deg) const {
+    std::vector<TriIndex> bad;
     double worst = 1;
-    for (TriIndex t = 0; t < c_.tri.size(); ++t)
-      if (is_inside(t)) worst = std::min(worst, quality(t));
-    return angle_deg(worst);
+    for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+      if (!is_inside(t)) continue;
+      const double q = quality(t);
+      worst = std::min(worst, q);
+      if (q < goal_) bad.push_back(t);
+    }
+    worst_deg = angle_deg(worst);
+    return bad;
   }
 
   bool work_on(TriIndex t) {
@@ -142,7 +145,8 @@ class Improvement {
     for (int i = 0; i < kSearchSteps; ++i) {
       const Point2 centre = best;
       bool found = false;
-      for (const Point2 d : {Point2{1, 0}, Point2{0, 1}, Point2{-1, 0}, Point2{0, -1}}) found |= try_at(centre + step * d);
+      for (const Point2 d : {Point2{1, 0}, Point2{0, 1}, Point2{-1, 0}, Point2{0, -1}})
+        found |= try_at(centre + step * d);
       if (!found) step *= 0.5;
     }
     if (best_quality < kGain * before) return false;
@@ -267,7 +271,8 @@ class Improvement {
       if (orient2d(at(t[0]), at(t[1]), at(t[2])) <= 0) continue;
       bool is_empty = true;
       for (const VertexIndex w : polygon_)
-        is_empty = is_empty && (w == t[0] || w == t[1] || w == t[2] || incircle(at(t[0]), at(t[1]), at(t[2]), at(w)) <= 0);
+        is_empty =
+            is_empty && (w == t[0] || w == t[1] || w == t[2] || incircle(at(t[0]), at(t[1]), at(t[2]), at(w)) <= 0);
       if (is_empty) return i;
     }
     return polygon_.size();

@@ -21,8 +21,8 @@ struct PlanarCounts {
 /// entered over the one edge that the point lies behind, so the angles under which the point sees the edges met are
 /// nested: no triangle is met twice, no vertex is swallowed, and the edges of the cavity come out in anticlockwise
 /// order. That holds in any valid triangulation with exact signs, whichever way ties (four points on a circle) are
-/// decided, so long as "on the circle" is always "outside": a symbolic perturbation is not needed in the plane, no marks
-/// are kept and no star-shape test is made. New triangles are bonded to the one before and the one after.
+/// decided, so long as "on the circle" is always "outside": a symbolic perturbation is not needed in the plane, no
+/// marks are kept and no star-shape test is made. New triangles are bonded to the one before and the one after.
 /// @par Source  Bowyer (1981), Watson (1981)
 class PlanarKernel {
  public:
@@ -36,8 +36,8 @@ class PlanarKernel {
   };
 
   struct Limits {
-    double min_distance = 0;         ///< > 0: refuse where a vertex of the cavity is nearer than this
-    bool keeps_off_segments = false; ///< refuse where a constrained edge of the cavity is seen under more than 110 degrees
+    double min_distance = 0;          ///< > 0: refuse where a vertex of the cavity is nearer than this
+    bool keeps_off_segments = false;  ///< refuse what stands so low over a constrained edge that angles get bad
   };
 
   /// @brief An edge of the cavity, from a to b with the cavity on its left.
@@ -60,7 +60,10 @@ class PlanarKernel {
   Insert insert_into(TriIndex holder, VertexIndex v, const Limits& limits);
 
   /// @brief Find the cavity of p, which lies in `holder`, and change nothing. `edges()` then has it.
-  void grow_cavity(TriIndex holder, Point2 p);
+  void grow_cavity(TriIndex holder, Point2 p) { grow_cavity(holder, p, 0); }
+  /// @brief The same; given up where a vertex of the cavity is met whose squared distance is less than `min_squared`.
+  /// @return false where it was given up
+  bool grow_cavity(TriIndex holder, Point2 p, double min_squared);
   /// @brief Fill the cavity found last with triangles to v.
   void fill_cavity(VertexIndex v);
   const std::vector<CavityEdge>& edges() const { return edges_; }
@@ -74,15 +77,22 @@ class PlanarKernel {
 
  private:
   TriIndex start_of(TriIndex hint) const { return hint == kNoTri ? last_tri : hint; }
-  bool is_in_conflict(TriIndex t, Point2 p) const;
+  /// An edge on the way out, with its ends relative to the point.
+  struct Open {
+    EdgeRef outer;
+    VertexIndex a, b;
+    std::uint32_t is_constrained;
+    Point2 to_a, to_b;
+  };
+  bool is_in_conflict(const Triangle& s, VertexIndex apex, const Open& edge, Point2 p, Point2 to_apex) const;
   bool is_ghost_in_conflict(const Triangle& ghost, Point2 p) const;
   bool has_duplicate(TriIndex holder, Point2 p);
   void turn_ghost(TriIndex t);
-  Insert check_cavity(Point2 p, const Limits& limits) const;
+  Insert check_segments(Point2 p, const Limits& limits) const;
   std::uint32_t random();
 
   TriComplex& c_;
-  std::vector<EdgeRef> stack_;
+  std::vector<Open> stack_;
   std::vector<TriIndex> cavity_, made_;
   std::vector<CavityEdge> edges_;
   std::uint32_t random_state_ = 12345;

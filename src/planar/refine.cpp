@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frontal Delaunay refinement in rounds (Rebay 1993). Terms: a triangle is accepted when its circle is about as large as
-// its vertices' sizes ask; the front is the edges between accepted triangles (or the boundary) and those that are not. A
-// triangle at the front proposes the point that would make a good triangle over that edge, but never beyond its own
-// circumcentre. Proposals go in in the order of the last round's, which follows the front; the kernel refuses those too
-// close to another point or to the boundary.
+// Frontal Delaunay refinement in rounds (Rebay 1993). Terms: a triangle is accepted when its circle is about as large
+// as its vertices' sizes ask; the front is the edges between accepted triangles (or the boundary) and those that are
+// not. A triangle at the front proposes the point that would make a good triangle over that edge, but never beyond its
+// own circumcentre. Proposals go in in the order of the last round's, which follows the front; the kernel refuses those
+// too close to another point or to the boundary.
 #include "planar/refine.hpp"
 
 #include <algorithm>
@@ -14,10 +14,12 @@ namespace delfront {
 
 namespace {
 
-constexpr double kAcceptedRadius = 0.75;  ///< of the wanted size; the regular triangle has 0.577
-constexpr double kMinDistance = 0.72;     ///< of the wanted size, between points
-constexpr double kLongestOverEdge = 1.6;  ///< sides over a short edge, of its length: 36 degrees between them
+constexpr double kAcceptedRadius = 0.75;    ///< of the wanted size; the regular triangle has 0.577
+constexpr double kMinDistance = 0.72;       ///< of the wanted size, between points
+constexpr double kLongestOverEdge = 1.6;    ///< sides over a short edge, of its length: 36 degrees between them
 constexpr double kShortestOverEdge = 0.68;  ///< sides over a long edge, of its length: 95 degrees between them
+constexpr double kFloor = 0.75;             ///< of a given segment: no smaller size at its ends
+constexpr double kFloorDecay = 0.75;        ///< of that a layer further in
 constexpr std::size_t kPointsPerCancelCheck = 4096;
 
 /// What is known of a triangle, in its flags; all of it goes when its slot is used again.
@@ -33,8 +35,9 @@ enum State : std::uint32_t {
 struct Proposal {
   Point2 at;
   TriIndex tri;
-  EdgeRef behind;        ///< the edge it stands over, from behind; kNoTri for none
-  std::uint32_t way;     ///< which of the triangle's proposals it is, as a State bit
+  double floor;       ///< no smaller size there; see set_floors()
+  EdgeRef behind;     ///< the edge it stands over, from behind; kNoTri for none
+  std::uint32_t way;  ///< which of the triangle's proposals it is, as a State bit
   std::uint32_t region;
 };
 
@@ -44,6 +47,7 @@ class Refinement {
       : grid_(grid), c_(grid.complex), size_(size), context_(context), kernel_(c_) {}
 
   RefineReport run() {
+    set_floors();
     kernel_.flags_of_new = queued;
     kernel_.last_tri = 0;
     for (TriIndex t = 0; t < c_.tri.size(); ++t) {
@@ -63,10 +67,26 @@ class Refinement {
       }
       if (!is_frontal) break;
       is_frontal = false;  // what the front could not reach: circumcentres
-      for (TriIndex t = 0; t < c_.tri.size(); ++t) fresh_.push_back(t);
+      for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+        if (!is_inside(t)) continue;
+        c_.tri[t].flags = (c_.tri[t].flags & ~(accepted | large)) | queued;
+        fresh_.push_back(t);
+      }
     }
     for (Triangle& t : c_.tri) t.flags &= kEdgeBits | kDead;
     return report_;
+  }
+
+  /// Where sizes are much less than a given segment, points crowd round a long edge and angles get bad whatever is
+  /// done. So sizes start from nearly the segments' lengths there and come down to the field's layer by layer.
+  void set_floors() {
+    floor_.assign(c_.point.size(), 0);
+    for (const PlanarPiece& piece : grid_.pieces) {
+      const double lowest = kFloor * std::sqrt(squared_length(c_.point[piece.b] - c_.point[piece.a]));
+      for (const VertexIndex v : {piece.a, piece.b})
+        if (c_.h[v] < lowest) floor_[v] = floor_[v] > 0 ? std::min(floor_[v], lowest) : lowest;
+    }
+    for (VertexIndex v = 0; v < floor_.size(); ++v) c_.h[v] = std::max(c_.h[v], floor_[v]);
   }
 
   const PlanarCounts& counts() const { return kernel_.counts; }
@@ -83,19 +103,25 @@ class Refinement {
     return {f * (d.y * b2 - b.y * d2), f * (b.x * d2 - d.x * b2)};
   }
 
+  /// R^2 = a^2 b^2 c^2 / (16 area^2), without dividing.
   bool is_accepted(const Triangle& s) const {
-    const double radius = kAcceptedRadius * mean_size(s);
-    return squared_length(circumcentre(s)) <= radius * radius;
+    const Point2 a = c_.point[s.node[0]], b = c_.point[s.node[1]], d = c_.point[s.node[2]];
+    const double radius = kAcceptedRadius * mean_size(s), area2 = cross(b - a, d - a);
+    return squared_length(b - a) * squared_length(d - b) * squared_length(a - d) <= 4 * radius * radius * area2 * area2;
   }
 
   /// Who may propose now and could not before: fresh triangles, and those that the front has come to.
   void collect_candidates() {
+    std::size_t num_fresh = 0;
     for (const TriIndex t : fresh_) {
       Triangle& s = c_.tri[t];
       if (!(s.flags & queued)) continue;
       s.flags &= ~queued;
-      if (is_inside(t)) s.flags |= is_accepted(s) ? accepted : large;
+      if (!is_inside(t)) continue;
+      s.flags |= is_accepted(s) ? accepted : large;
+      fresh_[num_fresh++] = t;
     }
+    fresh_.resize(num_fresh);
     candidates_.clear();
     const auto add = [&](TriIndex t) {
       Triangle& s = c_.tri[t];
@@ -121,7 +147,9 @@ class Refinement {
       if (is_frontal)
         propose_over_edge(t, s, c_.point[s.node[0]] + centre);
       else if (!(s.flags & refused_circumcentre))
-        proposals_.push_back({c_.point[s.node[0]] + centre, t, kNoTri, refused_circumcentre, s.region});
+        proposals_.push_back({c_.point[s.node[0]] + centre, t,
+                              kFloorDecay / 3 * (floor_[s.node[0]] + floor_[s.node[1]] + floor_[s.node[2]]), kNoTri,
+                              refused_circumcentre, s.region});
     }
     report_.candidates += proposals_.size();
   }
@@ -129,7 +157,7 @@ class Refinement {
   /// Over the shortest edge of the front.
   void propose_over_edge(TriIndex t, const Triangle& s, Point2 centre) {
     double shortest = 1e300;
-    Proposal proposal{{}, t, kNoTri, 0, s.region};
+    Proposal proposal{{}, t, 0, kNoTri, 0, s.region};
     for (unsigned e = 0; e < 3; ++e) {
       if (s.flags & (refused_0 << e)) continue;
       const bool is_constrained = s.flags >> e & 1;
@@ -148,6 +176,7 @@ class Refinement {
       proposal.at = up <= wanted ? centre : middle + wanted * normal;
       proposal.way = refused_0 << e;
       proposal.behind = s.neigh[e];
+      proposal.floor = kFloorDecay * 0.5 * (floor_[v] + floor_[w]);
       shortest = squared;
     }
     if (proposal.way) proposals_.push_back(proposal);
@@ -159,7 +188,7 @@ class Refinement {
     for (std::size_t i = 0; i < proposals_.size(); ++i) places_[i] = {proposals_[i].at.x, proposals_[i].at.y, 0};
     size_.sizes(places_, sizes_);
     for (std::size_t i = 0; i < proposals_.size(); ++i)
-      sizes_[i] = std::min(sizes_[i], grid_.region_h[proposals_[i].region]);
+      sizes_[i] = std::max(std::min(sizes_[i], grid_.region_h[proposals_[i].region]), proposals_[i].floor);
   }
 
   /// From the middle of a gap each: a point that goes in far from others of its round cuts a wide fan of the long
@@ -173,9 +202,10 @@ class Refinement {
         context_.check_cells(c_.num_live());
       }
       const Proposal& p = proposals_[i];
-      if (insert_one(p, sizes_[i]))
+      if (insert_one(p, sizes_[i])) {
+        floor_.push_back(p.floor);
         ++inserted;
-      else if (is_unchanged(p.tri))
+      } else if (is_unchanged(p.tri))
         c_.tri[p.tri].flags |= p.way;
     };
     if (n > 0) visit(0);
@@ -219,6 +249,7 @@ class Refinement {
   std::vector<Proposal> proposals_;
   std::vector<Point> places_;
   std::vector<double> sizes_;
+  std::vector<double> floor_;  ///< by vertex: no smaller size there, 0 for none
 };
 
 }  // namespace

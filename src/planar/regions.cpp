@@ -122,10 +122,10 @@ class Colouring {
       undecided += domain_.inner_loops == InnerLoops::by_direction && parts_[i].is_undecided && keep[i];
     }
     if (undecided > 0 && !has_far_field)
-      grid_.warnings.push_back(
-          fmt::format("{} regions are bounded by segments that run either way round; they are gridded (a hole is said by "
-                      "a seed, or by a loop against the one around it)",
-                      undecided));
+      grid_.warnings.push_back(fmt::format(
+          "{} regions are bounded by segments that run either way round; they are gridded (a hole is said by "
+          "a seed, or by a loop against the one around it)",
+          undecided));
     if (options_.keep == "largest" && parts_.size() > 1) {
       const auto largest = std::max_element(parts_.begin() + 1, parts_.end(),
                                             [](const Part& a, const Part& b) { return a.area < b.area; });
@@ -168,8 +168,8 @@ class Colouring {
     for (const PlanarSeed& seed : domain_.regions) {
       const std::uint32_t part = part_at(seed.at, nullptr);
       if (part == kNoPart || !keep[part]) {
-        grid_.warnings.push_back(fmt::format("the seed of region '{}' at ({:g}, {:g}) lies in no region", seed.name,
-                                             seed.at.x, seed.at.y));
+        grid_.warnings.push_back(
+            fmt::format("the seed of region '{}' at ({:g}, {:g}) lies in no region", seed.name, seed.at.x, seed.at.y));
         continue;
       }
       if (!seed.name.empty()) parts_[part].name = seed.name;

@@ -11,9 +11,9 @@ namespace delfront {
 
 namespace {
 
-constexpr std::size_t kSamples = 33;      ///< of the size along a piece, odd
-constexpr double kShortest = 0.1;         ///< of the size: no piece is halved below that, whoever stands in its circle
-constexpr double kAcuteCosine = 0.5;      ///< 60 degrees
+constexpr std::size_t kSamples = 33;  ///< of the size along a piece, odd
+constexpr double kShortest = 0.1;     ///< of the size: no piece is halved below that, whoever stands in its circle
+constexpr double kAcuteCosine = 0.5;  ///< 60 degrees
 constexpr std::size_t kPiecesPerCancelCheck = 256;
 
 class Splitting {
@@ -99,10 +99,12 @@ class Splitting {
     for (const PlanarPiece& piece : grid_.pieces) {
       const Point2 along = at(piece.b) - at(piece.a);
       const Point2 d = (1 / std::sqrt(squared_length(along))) * along;
-      for (const Point2 other : directions[piece.a]) is_acute_[piece.a] = is_acute_[piece.a] || dot(d, other) > kAcuteCosine;
+      for (const Point2 other : directions[piece.a])
+        is_acute_[piece.a] = is_acute_[piece.a] || dot(d, other) > kAcuteCosine;
       directions[piece.a].push_back(d);
       const Point2 back = -1 * d;
-      for (const Point2 other : directions[piece.b]) is_acute_[piece.b] = is_acute_[piece.b] || dot(back, other) > kAcuteCosine;
+      for (const Point2 other : directions[piece.b])
+        is_acute_[piece.b] = is_acute_[piece.b] || dot(back, other) > kAcuteCosine;
       directions[piece.b].push_back(back);
     }
   }

@@ -9,6 +9,7 @@ TriIndex TriComplex::new_slot() {
     free_slots.pop_back();
     return t;
   }
+  if (tri.size() >= kMostTriangles) throw LimitError("more than 2^30 triangles; ask for larger sizes");
   tri.push_back({});
   return static_cast<TriIndex>(tri.size() - 1);
 }

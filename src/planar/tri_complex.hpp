@@ -29,7 +29,8 @@ inline double squared_length(Point2 a) { return dot(a, a); }
 inline int orient2d(Point2 a, Point2 b, Point2 c) { return orient2d(&a.x, &b.x, &c.x); }
 inline int incircle(Point2 a, Point2 b, Point2 c, Point2 d) { return incircle(&a.x, &b.x, &c.x, &d.x); }
 
-/// @brief Half a cache line. Nodes run anticlockwise; a ghost (a, b, infinity) lies left of a -> b, outside of the hull.
+/// @brief Half a cache line. Nodes run anticlockwise; a ghost (a, b, infinity) lies left of a -> b, outside of the
+/// hull.
 struct alignas(32) Triangle {
   VertexIndex node[3];
   EdgeRef neigh[3];      ///< the same edge seen from the other side: neigh of neigh is oneself
@@ -37,7 +38,8 @@ struct alignas(32) Triangle {
   std::uint32_t flags;   ///< bits 0-2: edge is constrained; bit 3: dead; the rest belongs to who works on the complex
 };
 
-inline constexpr std::uint32_t kOutside = 0xffffffffu;  ///< colour of what is not gridded
+inline constexpr std::uint32_t kOutside = 0xffffffffu;               ///< colour of what is not gridded
+inline constexpr std::size_t kMostTriangles = std::size_t(1) << 30;  ///< two bits of a reference say which edge
 inline constexpr std::uint32_t kDead = 8;
 inline constexpr std::uint32_t kEdgeBits = 7;
 

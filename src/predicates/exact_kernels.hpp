@@ -42,9 +42,11 @@ inline int incircle_sign(const FixedInt<L> (&r)[3][2]) {
               lift(r[2], 2) * minor_xy(r[0], r[1]));
 }
 
-/// @brief Rows a - e … d - e; +1 where e lies in the sphere of the positive tet a, b, c, d.
+/// @brief Rows a - e … d - e and what e's neighbours are lifted by over e: +1 where e lies below the hyperplane through
+/// the others, lifted, for a positive tet a, b, c, d.
 template <int L>
-inline int insphere_sign(const FixedInt<L> (&r)[4][3]) {
+inline int lifted_sign(const FixedInt<L> (&r)[4][3], const FixedInt<2 * L>& lift_a, const FixedInt<2 * L>& lift_b,
+                       const FixedInt<2 * L>& lift_c, const FixedInt<2 * L>& lift_d) {
   const FixedInt<L>*a = r[0], *b = r[1], *c = r[2], *d = r[3];
   const auto ab = minor_xy(a, b), bc = minor_xy(b, c), cd = minor_xy(c, d), da = minor_xy(d, a);
   const auto ac = minor_xy(a, c), bd = minor_xy(b, d);
@@ -52,7 +54,13 @@ inline int insphere_sign(const FixedInt<L> (&r)[4][3]) {
   const auto bcd = b[2] * cd - c[2] * bd + d[2] * bc;
   const auto cda = c[2] * da + d[2] * ac + a[2] * cd;
   const auto dab = d[2] * ab + a[2] * bd + b[2] * da;
-  return sign((bcd * lift(a, 3) - cda * lift(b, 3)) + (dab * lift(c, 3) - abc * lift(d, 3)));
+  return sign((bcd * lift_a - cda * lift_b) + (dab * lift_c - abc * lift_d));
+}
+
+/// @brief Rows a - e … d - e; +1 where e lies in the sphere of the positive tet a, b, c, d.
+template <int L>
+inline int insphere_sign(const FixedInt<L> (&r)[4][3]) {
+  return lifted_sign(r, lift(r[0], 3), lift(r[1], 3), lift(r[2], 3), lift(r[3], 3));
 }
 
 }  // namespace delfront::detail

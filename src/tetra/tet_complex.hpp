@@ -97,6 +97,7 @@ class TetComplex {
   void bury_tet(TetIndex t) {
     flag[t] = dead;
     set_nodes(t, kNoIndex, kNoIndex, kNoIndex, kNoIndex);
+    for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) neigh[ref] = kNoIndex;
   }
   VertexIndex add_vertex(Point p, double h);
   /// @brief The same for vertices: take_vertices() gives numbers that no tet has, for set_vertex(); what is not used has

@@ -18,7 +18,7 @@ namespace delfront {
 
 namespace {
 
-constexpr double kClearance = 1.6;    ///< sizes between the core and the boundary: room for a regular layer
+constexpr double kClearance = 1.0;    ///< sizes between the core and boxes round the boundary: room for a regular layer
 constexpr double kMinDistance = 0.7;  ///< sizes to points that are there already
 constexpr double kJitter = 1e-4;      ///< of a lattice cell
 constexpr double kPlateau = 1 - 1e-9;
@@ -33,10 +33,10 @@ struct CellBox {
   std::int64_t i, j, k, side;
 };
 
-/// A box of points that is clear of the boundary: inside or outside as a whole. `nearest`: a vertex of the boundary.
+/// A box of points that is clear of the boundary: inside or outside as a whole. `near`: a vertex of the boundary.
 struct Cluster {
   Point centre;
-  VertexIndex nearest;
+  VertexIndex near;
   std::size_t end;  ///< of the points; the begin is the end of the one before
 };
 
@@ -63,7 +63,8 @@ class Core {
       tasks.swap(finer);
     }
     std::vector<Found> found(tasks.size());
-    parallel_for(context_.threads, tasks.size(), [&](std::size_t i) { search(tasks[i], found[i]); });
+    parallel_for(context_.threads, tasks.size(),
+                 [&](std::size_t i) { search(tasks[i], vertex_of_triangle_[0], found[i]); });
     std::vector<Point> points;
     for (const Found& f : found) keep_inside(f, points);
     return insert(points);
@@ -71,18 +72,20 @@ class Core {
 
  private:
   void collect_boundary() {
-    std::vector<std::array<Point, 3>> triangles;
+    std::vector<Box> triangles;
     for (TetIndex t = 0; t < c_.num_slots(); ++t) {
       if (c_.is_dead(t) || c_.is_ghost(t)) continue;
       for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
         if (!c_.is_constrained(ref) || (!c_.is_ghost(c_.neigh[ref] >> 2) && c_.neigh[ref] < ref)) continue;
         const auto n = c_.face_nodes(ref);
-        triangles.push_back({c_.point(n[0]), c_.point(n[1]), c_.point(n[2])});
+        Box box;
+        for (const VertexIndex v : n) box.add(c_.point(v));
+        box_.add(box);
+        triangles.push_back(box);
         vertex_of_triangle_.push_back(n[0]);
-        for (const VertexIndex v : n) box_.add(c_.point(v));
       }
     }
-    boundary_ = TriangleTree(std::move(triangles));
+    boundary_ = Bvh(triangles);
   }
 
   template <class Visit>
@@ -94,7 +97,8 @@ class Core {
 
   Point at(double i, double j, double k) const { return box_.low + Point{a_ * i, a_ * j, a_ * k}; }
 
-  /// A little off the lattice: on it, half of the tests on the way to the full one are ties, which cost exact arithmetic.
+  /// A little off the lattice: on it, half of the tests on the way to the full one are ties, which cost exact
+  /// arithmetic.
   Point lattice_point(double i, double j, double k) const {
     auto off = [](double x, double y) {
       const double r = 0.7548776662466927 * x + 0.5698402909980532 * y;
@@ -103,24 +107,32 @@ class Core {
     return at(i + off(j, k + 0.3 * i), j + off(k, i + 0.3 * j), k + off(i, j + 0.3 * k));
   }
 
-  void search(const CellBox& b, Found& found) const {
+  /// @return a triangle whose box comes near to this one, or kNoIndex
+  std::uint32_t find_near(const Box& box) const {
+    const Point reach = kClearance * h_ * Point{1, 1, 1};
+    std::uint32_t near = kNoIndex;
+    boundary_.for_each_overlap({box.low - reach, box.high + reach}, [&](std::uint32_t t) { near = std::min(near, t); });
+    return near;
+  }
+
+  /// @param near  a vertex of the boundary in the neighbourhood
+  void search(const CellBox& b, VertexIndex near, Found& found) const {
     const auto i = static_cast<double>(b.i), j = static_cast<double>(b.j), k = static_cast<double>(b.k);
     const auto s = static_cast<double>(b.side);
     const Box box{at(i, j, k), at(i + s, j + s, k + s)};
     if (!box.overlaps(box_)) return;
-    const Point reach = kClearance * h_ * Point{1, 1, 1};
-    bool is_clear = size_.lower_bound(box) >= kPlateau * h_;
-    if (is_clear)
-      boundary_.bvh().for_each_overlap({box.low - reach, box.high + reach}, [&](std::uint32_t) { is_clear = false; });
-    if (is_clear) {
+    const std::uint32_t triangle = find_near(box);
+    if (triangle == kNoIndex && size_.lower_bound(box) >= kPlateau * h_) {
       add_all(b, found);
-      const TriangleTree::Hit hit = boundary_.nearest(box.centre());
-      found.clusters.push_back({box.centre(), vertex_of_triangle_[hit.triangle], found.points.size()});
-    } else if (b.side > 1) {
-      for_each_octant(b, [&](const CellBox& octant) { search(octant, found); });
+      found.clusters.push_back({box.centre(), near, found.points.size()});
+      return;
+    }
+    if (triangle != kNoIndex) near = vertex_of_triangle_[triangle];
+    if (b.side > 1) {
+      for_each_octant(b, [&](const CellBox& octant) { search(octant, near, found); });
     } else {
-      try_point(lattice_point(i, j, k), found);
-      try_point(lattice_point(i + 0.5, j + 0.5, k + 0.5), found);
+      try_point(lattice_point(i, j, k), near, found);
+      try_point(lattice_point(i + 0.5, j + 0.5, k + 0.5), near, found);
     }
   }
 
@@ -134,13 +146,10 @@ class Core {
         }
   }
 
-  void try_point(const Point& p, Found& found) const {
-    if (size_.size(p) < kPlateau * h_) return;
-    const auto all = [](std::uint32_t) { return true; };
-    if (boundary_.nearest_if(p, all, kClearance * h_).found()) return;
-    const TriangleTree::Hit hit = boundary_.nearest(p);
+  void try_point(const Point& p, VertexIndex near, Found& found) const {
+    if (find_near({p, p}) != kNoIndex || size_.size(p) < kPlateau * h_) return;
     found.points.push_back(p);
-    found.clusters.push_back({p, vertex_of_triangle_[hit.triangle], found.points.size()});
+    found.clusters.push_back({p, near, found.points.size()});
   }
 
   /// Clusters whose centre lies in a tet that is kept.
@@ -148,7 +157,7 @@ class Core {
     std::size_t begin = 0;
     for (const Cluster& cluster : found.clusters) {
       const VertexIndex v = c_.add_vertex(cluster.centre, h_);
-      const TetIndex t = kernel_.locate(v, c_.vertex_tet[cluster.nearest], kMaxSteps);
+      const TetIndex t = kernel_.locate(v, c_.vertex_tet[cluster.near], kMaxSteps);
       c_.remove_last_vertex();
       if (t != kNoIndex && !c_.is_ghost(t))
         points.insert(points.end(), found.points.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -179,7 +188,7 @@ class Core {
   KernelCounts& counts_;
   Context& context_;
   DelaunayKernel kernel_{c_};
-  TriangleTree boundary_;
+  Bvh boundary_;
   std::vector<VertexIndex> vertex_of_triangle_;
   Box box_;
 };

@@ -186,11 +186,11 @@ std::vector<SplitTriangle> find_split_triangles(const Segments& segments) {
 void warn_of_split(const BoundaryGrid& grid, const RecoveryReport& report, Context& context) {
   if (report.steiner_left == 0) return;
   const Point at = report.left.empty() ? Point{} : report.left[0].at;
-  context.log(
-      LogLevel::warning,
-      fmt::format("the surface is not kept as it was given: {} points stay on its edges, the first at "
-                  "({:g}, {:g}, {:g}), and {} of its triangles are divided; more room between its parts there helps",
-                  report.steiner_left, at.x, at.y, at.z, grid.split.size()));
+  context.log(LogLevel::warning,
+              fmt::format("the surface is not kept as it was given: {} points stay on its edges, the first at "
+                          "({:g}, {:g}, {:g}), and {} of its triangles are divided: {}",
+                          report.steiner_left, at.x, at.y, at.z, grid.split.size(),
+                          report.left_why.empty() ? "no place was found for them" : report.left_why[0]));
 }
 
 /// Powers of two that make the longest sides of a thin model's box alike; {1, 1, 1} where it is not thin.

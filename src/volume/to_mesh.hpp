@@ -10,6 +10,9 @@ namespace delfront {
 ///
 /// Model vertices that bound nothing that is kept are left out; the order of the others stays. Boundary faces point out
 /// of the region with the lower id; those with cells on both sides belong to a group that says so.
-Mesh to_mesh(const BoundaryGrid& grid, const Model& model);
+/// @param[in] grid  hand it over (std::move): its arrays are freed while the mesh grows, so that the two are never
+/// there in full together
+/// @par Threads  the same mesh for any number
+Mesh to_mesh(BoundaryGrid grid, const Model& model, int threads = 1);
 
 }  // namespace delfront

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "volume/edge_flips.hpp"
 #include "volume/facets.hpp"
@@ -52,10 +53,13 @@ class PointRemoval {
   /// 1: take in tets beyond the star where nothing else helps; more: and take any place at all, and look elsewhere for
   /// what is in the way.
   int growth = 0;
+  /// Whether the last point that had to stay lies on an edge where a facet ends, with one region on both its sides.
+  bool is_at_sheet_border = false;
 
   /// @return false where s has to stay
   bool remove(VertexIndex s) {
     s_ = s;
+    is_at_sheet_border = false;
     c_.star(s, star_);
     segments_.neighbours(s, ends_);
     if (!find_sectors() || !find_paths() || !triangulate_paths()) return false;
@@ -140,7 +144,8 @@ class PointRemoval {
 
   bool triangulate_paths() {
     for (Path& path : paths_) {
-      if (path.sector[0] == path.sector[1]) return false;  // the facet ends here, with one region all round
+      is_at_sheet_border = path.sector[0] == path.sector[1];
+      if (is_at_sheet_border) return false;
       const VertexIndex apex = off_plane(path);
       if (apex == kNoIndex || !clip_ears(path, apex)) return false;
     }
@@ -443,13 +448,20 @@ void make_room(TetComplex& c, VertexIndex s) {
 }
 
 /// Points that stay become plain coordinates; every tet around them has to stay positive.
-void round_points(TetComplex& c, const std::vector<VertexIndex>& left, RecoveryReport& report) {
+/// @param at_border  the points of them that lie on the border of a sheet
+void round_points(TetComplex& c, const std::vector<VertexIndex>& left, const std::set<VertexIndex>& at_border,
+                  RecoveryReport& report) {
   std::vector<TetIndex> star;
   c.segment_points.clear();
   for (const VertexIndex s : left) {
     c.on_boundary[s] = 1;
     const Point at = c.point(s);
     report.left.push_back({at, {s}});
+    report.left_why.push_back(at_border.contains(s)
+                                  ? "a sheet ends at this edge, and one region lies all round it: a point that leaves "
+                                    "the edge would have to cross the sheet"
+                                  : "no place inside sees all around the point in double precision: the surface is "
+                                    "too thin there");
     c.star(s, star);
     for (const TetIndex t : star) {
       const std::uint32_t* n = &c.node[4 * t];
@@ -479,14 +491,17 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
   PointRemoval removal(complex, segments);
   const RequiredEdges none{Segments{}};  // constrained faces hold all edges that matter
   EdgeFlips flips(complex, none);
+  std::set<VertexIndex> at_border;
   for (int pass = 0; pass < kMaxPasses && !left.empty(); ++pass) {
     std::vector<VertexIndex> still;
+    at_border.clear();
     for (std::size_t i = 0; i < left.size(); ++i) {
       if (removal.remove(left[i])) {
         forget(segments, left[i]);
         ++report.steiner_moved;
       } else {
         still.push_back(left[i]);
+        if (removal.is_at_sheet_border) at_border.insert(left[i]);
       }
       if (i % 64 == 0) context.progress("recover", i, left.size(), "points moved off edges");
     }
@@ -499,7 +514,7 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
     flips.restore_delaunay(context);
   }
   report.steiner_left = left.size();
-  round_points(complex, left, report);
+  round_points(complex, left, at_border, report);
 }
 
 }  // namespace delfront

@@ -100,6 +100,10 @@ int main(int argc, char** argv) {
   write_text(root, "obj", "o a\nusemtl b\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1/1 2//2 -1/3/4\nf 1 2 \\\n3\n");
   write_text(root, "poly",
              "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n1 1\n2 0 5\n4 1 2 3 4\n2 1 3\n1\n1 0 0 0\n0\n");
+  write_text(root, "planar_poly",
+             "4 2 1 1\n1 0 0 9 1\n2 1 0 9 1\n3 1 1 9 0\n4 0 1 9 2\n4 1\n1 1 2 1\n2 2 3 1\n3 3 4 2\n4 4 1 0\n1\n1 2 "
+             "2\n1\n1 .5 .5 7 .1\n");
+  write_text(root, "dat", "name\n 3. 3.\n\n0 0\n.5 .06\n1 .01\n\n0 0\n.5 -.06\n1 -.01\n999 999\n2 0\n3 0\n2.5 1\n");
   write_text(root, "off", "COFF # c\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2 9\n");
   write_text(root, "stl",
              "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");

@@ -35,7 +35,7 @@ Worst measure_worst(const TetComplex& c, std::uint32_t region = 0) {
 ImproveReport improve_and_check(TetComplex& c, const ImproveOptions& options = {}) {
   const auto faces = fixtures::constrained_faces(c);
   const double volume = fixtures::total_volume(c);
-  const std::vector<TetVertex> vertices = c.vertex;
+  const auto vertices = c.vertex;
   Context context;
   const ImproveReport report = improve_complex(c, UnitSize(), options, context);
   EXPECT_EQ(c.find_defect(), "");

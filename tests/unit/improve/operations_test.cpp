@@ -111,7 +111,7 @@ void operate_at_random(TetComplex c, unsigned seed, int steps, int (&done)[4]) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   const auto faces = fixtures::constrained_faces(c);
   const double volume = fixtures::total_volume(c);
-  const std::vector<TetVertex> vertices = c.vertex;
+  const auto vertices = c.vertex;
   std::mt19937 random(seed);
   LocalOperations operations(c);
   for (int step = 0; step < steps; ++step) {

@@ -233,6 +233,8 @@ Options unusual_options() {
       {"size.hmin", "1e-7"},
       {"size.hmax", "12.5%"},
       {"size.growth", "1.1"},
+      {"planar.boundary", "split"},
+      {"planar.min_angle", "25"},
       {"volume.method", "none"},
       {"improve.enabled", "false"},
       {"improve.max_passes", "3"},

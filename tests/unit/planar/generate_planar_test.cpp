@@ -13,9 +13,13 @@ namespace {
 
 using namespace fixtures;
 
-Outcome generate(const PlanarDomain& domain, const Options& options = {}, const SizeField* size = nullptr) {
+Outcome generate(const PlanarDomain& domain, const Options& options, const SizeField* size = nullptr) {
   Context context;
   return generate_planar(domain, options, context, size);
+}
+Outcome generate(const PlanarDomain& domain) {
+  const Options defaults;
+  return generate(domain, defaults);
 }
 
 std::string findings_of(const Mesh& mesh) {
@@ -211,7 +215,8 @@ TEST(GeneratePlanar, T3_split_boundary_lies_on_the_given_one) {
   EXPECT_EQ(findings_of(outcome.mesh), "");
   EXPECT_GT(min_angle(outcome), 25);
   double given = 0;
-  for (const auto& [a, b] : domain.segments) given += std::hypot(domain.points[a].x - domain.points[b].x, domain.points[a].y - domain.points[b].y);
+  for (const auto& [a, b] : domain.segments)
+    given += std::hypot(domain.points[a].x - domain.points[b].x, domain.points[a].y - domain.points[b].y);
   const CellBlock* lines = outcome.mesh.find_block(CellType::line);
   double total = 0;
   for (std::size_t i = 0; i < lines->size(); ++i) {
@@ -282,7 +287,8 @@ TEST(GeneratePlanar, T2_T3_random_polygons_with_holes) {
     double area = 0, radius = 1;
     const int depth = 1 + int(seed % 4);
     for (int k = 0; k < depth; ++k) {
-      // A star of n corners keeps clear of the circle of low * cos(pi / n) at worst; gaps of its angles are up to 1.8/n.
+      // A star of n corners keeps clear of the circle of low * cos(pi / n) at worst; gaps of its angles are up
+      // to 1.8/n.
       const int n = std::max(6, corners(random));
       const double low = 0.6 * radius;
       const std::vector<Point2> loop = star(random, {0, 0}, low, radius, n);

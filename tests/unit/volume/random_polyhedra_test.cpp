@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -167,6 +168,45 @@ Body random_cells(unsigned seed, unsigned num_sizes) {
   return body;
 }
 
+/// Cells of an n^3 lattice of three materials and none, n = 2 or 3, faces between them stored once and turned as they
+/// come, and some faces between cells of one material: sheets, which hang, float, or meet three and more in an edge.
+Facets random_rooms(unsigned seed) {
+  std::mt19937 random(seed);
+  const int n = 2 + static_cast<int>(random() % 2);
+  std::vector<unsigned> material;
+  for (int i = 0; i < n * n * n; ++i) material.push_back(random() % 4);
+  material[0] = 1;
+  auto of = [&](std::array<int, 3> c) {
+    const bool is_in = std::min({c[0], c[1], c[2]}) >= 0 && std::max({c[0], c[1], c[2]}) < n;
+    return is_in ? material[static_cast<std::size_t>((c[2] * n + c[1]) * n + c[0])] : 0u;
+  };
+  const RandomMap map(random);
+  std::map<std::array<int, 3>, std::size_t> index;
+  Facets rooms;
+  auto vertex = [&](std::array<int, 3> at) {
+    const auto [it, is_new] = index.try_emplace(at, rooms.points.size());
+    if (is_new) rooms.points.push_back(map({double(at[0]), double(at[1]), double(at[2])}));
+    return it->second;
+  };
+  for (int i = -1; i < n; ++i)
+    for (int j = -1; j < n; ++j)
+      for (int k = -1; k < n; ++k)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          std::array<int, 3> next{i, j, k};
+          ++next[axis];
+          const unsigned here = of({i, j, k}), there = of(next);
+          if (here == there && (here == 0 || random() % 8 != 0)) continue;
+          const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3, turn = random() % 2;
+          std::array<int, 3> b = next, c = next, d = next;
+          ++b[u], ++c[u], ++c[v], ++d[v];
+          std::vector<std::size_t> q = {vertex(next), vertex(b), vertex(c), vertex(d)};
+          if (random() % 2 == 0) std::reverse(q.begin(), q.end());
+          rooms.faces.push_back({q[turn], q[turn + 1], q[turn + 2]});
+          rooms.faces.push_back({q[turn], q[turn + 2], q[(turn + 3) % 4]});
+        }
+  return rooms;
+}
+
 void expect_recovered(const Body& body, const char* kind, unsigned seed) {
   SCOPED_TRACE(std::string(kind) + ", seed " + std::to_string(seed) + ": DELFRONT_RANDOM_SEED=" + std::to_string(seed) +
                " DELFRONT_RANDOM_CASES=1");
@@ -186,6 +226,24 @@ TEST(RandomPolyhedra, sets_of_tets) {
 TEST(RandomPolyhedra, sets_of_cells) {
   const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 90);
   for (unsigned seed = first; seed < first + cases; ++seed) expect_recovered(random_cells(seed, 3), "cells", seed);
+}
+
+/// Only a border that a sheet has to itself may keep points, and then says so; the fixture compares.
+TEST(RandomPolyhedra, rooms_of_several_materials_with_sheets) {
+  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 150);
+  for (unsigned seed = first; seed < first + cases; ++seed) {
+    SCOPED_TRACE("DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");
+    DomainOptions all;
+    all.keep = "all";
+    try {
+      const auto r = fixtures::expect_recovered(random_rooms(seed), std::numeric_limits<double>::quiet_NaN(), all);
+      EXPECT_EQ(r.report.left.size(), r.report.steiner_left);
+      EXPECT_EQ(r.report.left_why.size(), r.report.steiner_left);
+      for (const std::string& why : r.report.left_why) EXPECT_TRUE(why.starts_with("a sheet ends")) << why;
+    } catch (const Error& e) {
+      ADD_FAILURE() << e.what();
+    }
+  }
 }
 
 TEST(RandomPolyhedra, cells_that_kept_a_point_on_an_edge) { expect_recovered(random_cells(97, 3), "cells", 97); }

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Grids in the plane: airfoil sections in a far field, a job file with holes, regions and sizes, what is refused."""
+import math
+import subprocess
+import sys
+import unittest
+
+import case
+
+CHECKER = case.ROOT.parent / "shared" / "tools" / "check_mesh.py"
+SQUARE = "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n"
+
+
+def naca0012(n=60):
+    def half_thickness(x):
+        return 0.6 * (0.2969 * math.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1015 * x**4)
+
+    xs = [0.5 * (1 + math.cos(math.pi * i / n)) for i in range(n + 1)]
+    points = [(x, half_thickness(x)) for x in xs] + [(x, -half_thickness(x)) for x in reversed(xs[:-1])]
+    return "NACA 0012\n" + "".join(f"{x:.7f} {y:.7f}\n" for x, y in points)
+
+
+def area(points):
+    return 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(points, points[1:] + points[:1]))
+
+
+class Section(case.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("foil.dat", naca0012())
+
+    def test_a_section_in_a_far_field_is_ready_for_a_solver(self):
+        self.expect(0, "mesh", "foil.dat", "-o", "c.su2", "-o", "c.vtu", "--farfield", "circle:50c", "--report", "r.json",
+                    "--require", "min_angle > 28")
+        text = (self.folder / "c.su2").read_text()
+        self.assertIn("NDIME= 2", text)
+        self.assertIn("MARKER_TAG= foil", text)
+        self.assertIn("MARKER_TAG= farfield", text)
+        self.assertEqual(text.split("MARKER_TAG= foil")[1].split("MARKER_ELEMS=")[1].split()[0], "121")
+        quality = self.report("r.json")["quality"]
+        self.assertLess(abs(quality["volume"] - math.pi * 2500) / 2500, 0.05)
+
+    def test_the_given_points_stay(self):
+        self.expect(0, "mesh", "foil.dat", "-o", "c.mesh", "--farfield", "circle:20c")
+        words = (self.folder / "c.mesh").read_text().split("Vertices")[1].split()
+        points = [(float(words[1 + 3 * i]), float(words[2 + 3 * i])) for i in range(121)]
+        given = [tuple(map(float, line.split())) for line in naca0012().splitlines()[1:]]
+        self.assertEqual(points, given)
+
+    def test_the_same_bytes_for_any_number_of_threads(self):
+        files = []
+        for threads in (1, 2, 8):
+            self.expect(0, "mesh", "foil.dat", "-o", f"{threads}.vtu", "--farfield", "circle:20c", "-j", threads)
+            files.append((self.folder / f"{threads}.vtu").read_bytes())
+        self.assertEqual(files[0], files[1])
+        self.assertEqual(files[0], files[2])
+
+    def test_the_inside(self):
+        self.expect(0, "mesh", "foil.dat", "-o", "c.msh", "--report", "r.json")
+        given = [tuple(map(float, line.split())) for line in naca0012().splitlines()[1:]]
+        self.assertAlmostEqual(self.report("r.json")["quality"]["volume"], area(given), 12)
+
+    def test_it_is_looked_at(self):
+        self.expect(0, "info", "foil.dat", says="line")
+        self.expect(0, "check", "foil.dat")
+        self.expect(0, "mesh", "foil.dat", "--stop-after", "geometry")
+        self.expect(0, "mesh", "foil.dat", "-o", "c.vtu", "--farfield", "circle:20c")
+        self.expect(0, "check", "c.vtu", says="min_angle")
+
+
+class PlanarErrors(case.Case):
+    def test_what_cannot_be_gridded_is_refused_with_the_place(self):
+        crossing = SQUARE.replace("1 1 2\n2 2 3", "1 1 3\n2 3 2").replace("3 3 4\n4 4 1", "3 2 4\n4 4 1")
+        self.write("cross.poly", crossing)
+        self.expect(3, "mesh", "cross.poly", "-o", "c.vtu", says="cross")
+        self.expect(3, "check", "cross.poly", says="(0.5, 0.5")
+        self.write("open.poly", SQUARE.replace("4 0\n1 1 2", "3 0\n1 1 2").replace("4 4 1\n", ""))
+        self.expect(3, "mesh", "open.poly", "-o", "c.vtu", says="bound nothing")
+        self.assertNotIn("c.vtu", self.files())
+
+    def test_a_far_field_that_is_too_small(self):
+        self.write("foil.dat", naca0012())
+        self.expect(3, "mesh", "foil.dat", "-o", "c.vtu", "--farfield", "circle:0.3c", says="does not enclose")
+
+    def test_formats_without_a_plane(self):
+        self.write("square.poly", SQUARE)
+        self.expect(2, "mesh", "square.poly", "-o", "foam/", says="OpenFOAM")
+        self.expect(2, "mesh", "square.poly", "-o", "c.stl", says="surfaces only")
+        self.assertEqual(self.files(), ["square.poly"])
+
+    def test_options_of_the_plane(self):
+        self.write("square.poly", SQUARE)
+        self.expect(2, "mesh", "square.poly", "-o", "c.vtu", "--boundary", "splti", says="split")
+        self.expect(0, "mesh", "square.poly", "-o", "c.vtu", "--boundary", "split", "--hmax", "0.05")
+        self.expect(5, "mesh", "square.poly", "-o", "c.vtu", "--require", "min_angle > 60.5", says="min_angle")
+
+
+class PlanarJob(case.Case):
+    def test_the_example_with_holes_regions_and_sizes(self):
+        example = case.ROOT / "examples" / "planar_section"
+        subprocess.run([sys.executable, example / "make_channel.py"], cwd=self.folder, check=True)
+        self.write("section.toml", (example / "section.toml").read_text())
+        self.expect(0, "mesh", "section.toml", "--report", "r.json")
+        report = self.report("r.json")
+        self.assertGreater(report["quality"]["measures"]["min_angle"]["min"], 25)
+        text = (self.folder / "channel.su2").read_text()
+        for name in ("body", "walls"):
+            self.assertIn(f"MARKER_TAG= {name}", text)
+
+
+class IndependentCheck(case.Case):
+    def test_sections(self):
+        if not CHECKER.exists() or subprocess.run(["/usr/bin/python3", "-c", "import meshio, scipy"],
+                                                  capture_output=True).returncode:
+            self.skipTest("the checker, or meshio, is not here")
+        for name in ("naca0012", "rae2822", "s1223"):
+            with self.subTest(name):
+                path = self.shared(f"airfoil/{name}.dat")
+                self.expect(0, "mesh", path, "-o", "c.vtu", "--farfield", "circle:50c", "--require", "min_angle > 25")
+                checked = subprocess.run(["/usr/bin/python3", CHECKER, self.folder / "c.vtu"], capture_output=True, text=True)
+                self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
