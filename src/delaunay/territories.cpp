@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "delfront/errors.hpp"
 
 namespace delfront {
 
@@ -69,9 +70,10 @@ class Batch {
     Vertices left = round;
     for (int curve = 0; curve < kNumCurves && left.size() >= kWorthTerritories; ++curve) {
       key_along_curve(curve);
-      if (curve > 0)
-        std::sort(left.begin(), left.end(),
-                  [&](VertexIndex a, VertexIndex b) { return key_[a] != key_[b] ? key_[a] < key_[b] : a < b; });
+      const auto is_before = [&](VertexIndex a, VertexIndex b) {
+        return key_[a] != key_[b] ? key_[a] < key_[b] : a < b;
+      };
+      if (!std::is_sorted(left.begin(), left.end(), is_before)) std::sort(left.begin(), left.end(), is_before);
       left = insert_in_territories(left, num_territories(round.size()));
     }
     std::sort(left.begin(), left.end());
@@ -168,6 +170,7 @@ Territories::Territories(TetComplex& complex, std::size_t num_parts, std::size_t
     const std::size_t begin = begin_of(i), end = begin_of(i + 1);
     const std::uint32_t first = i == 0 ? 0 : key_of_item(begin);
     const std::uint32_t last = i + 1 == num_parts ? kNoIndex : key_of_item(end);
+    DELFRONT_CHECK(first <= last);  // or two parts would overlap
     parts_.push_back({begin,
                       end,
                       {nullptr, first, last - first},

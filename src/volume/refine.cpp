@@ -28,7 +28,7 @@ constexpr std::uint64_t kMaxSteps = 1000;  ///< to a proposal's tet, 5 on averag
 constexpr std::size_t kRecent = 16;        ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
 constexpr std::size_t kGrain = 1 << 12;
-constexpr std::size_t kSlotsPerProposal = 8;  ///< 5.7 tets a point remain, a few more may stand for a while
+constexpr std::size_t kSlotsPerProposal = 4;  ///< a third of the proposals become points, of 5.7 tets each
 constexpr std::size_t kVerticesPerTerritory = 1 << 16, kMaxTerritories = 256;
 constexpr std::size_t kWorthTerritories = 1 << 12;  ///< proposals
 constexpr unsigned kPasses = 3;
@@ -179,7 +179,7 @@ class Refinement {
         for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) add(c_.neigh[ref] >> 2);
     }
     for (const TetIndex t : candidates_) state_[t] &= static_cast<std::uint16_t>(~queued);
-    fresh_.clear();
+    fresh_.release();
   }
 
   void propose(Placement placement) {
@@ -252,7 +252,7 @@ class Refinement {
     sizes_.resize(n);
     parallel_ranges(context_.threads, n, kGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) places_[i] = proposals_[order_[i].second].at;
-      size_.sizes(std::span(places_).subspan(first, last - first), std::span(sizes_).subspan(first, last - first));
+      size_.sizes({&places_[first], last - first}, {&sizes_[first], last - first});
     });
   }
 
@@ -290,7 +290,7 @@ class Refinement {
       inserted += work.inserted;
       num_left_ += work.left.size();
       c_.give_vertices(work.vertices);
-      fresh_.insert(fresh_.end(), work.fresh.begin(), work.fresh.end());
+      for (const TetIndex t : work.fresh) fresh_.push_back(t);
     }
     for (const Work& work : works)
       for (const TetIndex t : work.left)
@@ -360,13 +360,13 @@ class Refinement {
   std::array<FlatArray<std::uint32_t>, kCurves> key_;  ///< by vertex: the upper half of its place along each curve
   RefineReport report_;
   FlatArray<std::uint16_t> state_;    ///< by tet, bits of State
-  std::vector<TetIndex> fresh_;       ///< made since the last round
-  std::vector<TetIndex> candidates_;  ///< who may propose
+  FlatArray<TetIndex> fresh_;       ///< made since the last round
+  FlatArray<TetIndex> candidates_;  ///< who may propose
   std::vector<Proposal> proposals_;
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  ///< place along the curve, proposal
-  std::vector<std::uint8_t> is_ours_;  ///< by order: whether the proposing tet lies in the territory
-  std::vector<Point> places_;
-  std::vector<double> sizes_;
+  FlatArray<std::uint8_t> is_ours_;  ///< by order: whether the proposing tet lies in the territory
+  FlatArray<Point> places_;
+  FlatArray<double> sizes_;
   std::size_t num_left_ = 0;  ///< proposals of the last round that have to wait
 };
 

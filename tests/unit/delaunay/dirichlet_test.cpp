@@ -198,6 +198,23 @@ TEST(Dirichlet, clipped_volumes_sum_to_the_box_and_everything_closes) {
     }
 }
 
+TEST(Dirichlet, tiny_sets_full_of_ties_close_and_fill_the_box) {
+  std::mt19937 random(58);
+  const auto upto = [&](int n) { return static_cast<double>(random() % static_cast<unsigned>(n + 1)); };
+  for (int n = 0; n < 2000; ++n) {
+    std::vector<Point> points;
+    const double step = n % 2 == 0 ? 1 : 0.1;  // 0.1: ties broken by rounding
+    for (int i = 0; i < 1 + n % 17; ++i) points.push_back({step * upto(3), step * upto(3), step * upto(3)});
+    const Box box{{step * (upto(2) - 1), -step, step * 0.5}, {step * (upto(2) + 1.5), step * 2.5, step * 3}};
+    SCOPED_TRACE("seed 58 case " + std::to_string(n));
+    Context context;
+    const DirichletCells cells = dirichlet(points, context, box);
+    ASSERT_NEAR(sum(cells.volumes), volume_of(box), 1e-11 * volume_of(box));
+    ASSERT_NO_FATAL_FAILURE(expect_closed(cells));
+    ASSERT_NO_FATAL_FAILURE(expect_faces_between(points, cells, box.diagonal()));
+  }
+}
+
 TEST(Dirichlet, random_places_lie_in_the_cell_of_the_nearest_point) {
   std::mt19937 random(52);
   std::uniform_real_distribution<double> uniform(0, 1);

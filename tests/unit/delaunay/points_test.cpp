@@ -343,6 +343,33 @@ TEST(RegularOfPoints, the_set_of_tets_does_not_depend_on_the_order_of_the_points
   }
 }
 
+TEST(RegularOfPoints, the_definition_holds_for_tiny_sets_full_of_ties) {
+  std::mt19937 random(34);
+  const auto upto = [&](int n) { return static_cast<double>(random() % static_cast<unsigned>(n + 1)); };
+  std::size_t hidden = 0, flat = 0;
+  for (int n = 0; n < 5000; ++n) {
+    std::vector<Point> points;
+    std::vector<double> weights;
+    const int side = 1 + n % 3;
+    for (int i = 0; i < 4 + n % 13; ++i) {
+      points.push_back({upto(side), upto(side), upto(side)});
+      weights.push_back(upto(n % 5));
+    }
+    SCOPED_TRACE("seed 34 case " + std::to_string(n));
+    Context context;
+    try {
+      const Tetrahedrization result = regular(points, weights, context);
+      ASSERT_NO_FATAL_FAILURE(expect_right(points, weights, result));
+      ASSERT_NO_FATAL_FAILURE(expect_right(points, {}, delaunay(points, context)));
+      hidden += result.hidden.size();
+    } catch (const InputError&) {
+      ++flat;
+    }
+  }
+  EXPECT_GT(hidden, 200u);
+  EXPECT_LT(flat, 1500u);
+}
+
 TEST(RegularOfPoints, a_heavy_point_hides_those_near_it_and_never_a_corner_of_the_hull) {
   std::vector<Point> points = random_points(2000, 27);
   points.push_back({0.5, 0.5, 0.5});
