@@ -28,7 +28,7 @@ struct RecoveryReport {
 struct RefineReport {
   std::size_t points_inserted = 0;
   std::size_t points_in_core = 0;  ///< of these, on the lattice of the uniform core
-  std::size_t candidates = 0;  ///< proposed, before the filters
+  std::size_t candidates = 0;      ///< proposed, before the filters
   std::size_t rounds = 0;
   KernelCounts kernel;
 };

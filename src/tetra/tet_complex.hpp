@@ -64,7 +64,7 @@ class TetComplex {
   mutable FlatArray<std::uint16_t> flag;  ///< 1 a tet; mutable: const searches mark with in_scan and clear it
   FlatArray<std::uint32_t> region;        ///< 1 a tet: the colour of its region; kOutside for what is not gridded
   FlatArray<TetIndex> vertex_tet;         ///< one live tet of each vertex, or kNoIndex
-  FlatArray<std::uint8_t> on_boundary;  ///< 1 a vertex: 1 where it is a vertex of the given boundary and may not move
+  FlatArray<std::uint8_t> on_boundary;    ///< 1 a vertex: 1 where it is a vertex of the given boundary and may not move
   /// Steiner points on boundary segments, held exactly until boundary recovery ends; empty afterwards.
   std::unordered_map<VertexIndex, ExactPoint> segment_points;
 
@@ -100,8 +100,8 @@ class TetComplex {
     for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) neigh[ref] = kNoIndex;
   }
   VertexIndex add_vertex(Point p, double h);
-  /// @brief The same for vertices: take_vertices() gives numbers that no tet has, for set_vertex(); what is not used has
-  /// to be given back, and is taken again first.
+  /// @brief The same for vertices: take_vertices() gives numbers that no tet has, for set_vertex(); what is not used
+  /// has to be given back, and is taken again first.
   std::vector<VertexIndex> take_vertices(std::size_t count);
   void give_vertices(std::span<const VertexIndex> numbers);
   void set_vertex(VertexIndex v, Point p, double h) { vertex[v] = {p.x, p.y, p.z, h}; }

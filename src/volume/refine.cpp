@@ -359,7 +359,7 @@ class Refinement {
   std::array<HilbertCurve, kCurves> curve_;
   std::array<FlatArray<std::uint32_t>, kCurves> key_;  ///< by vertex: the upper half of its place along each curve
   RefineReport report_;
-  FlatArray<std::uint16_t> state_;    ///< by tet, bits of State
+  FlatArray<std::uint16_t> state_;  ///< by tet, bits of State
   FlatArray<TetIndex> fresh_;       ///< made since the last round
   FlatArray<TetIndex> candidates_;  ///< who may propose
   std::vector<Proposal> proposals_;

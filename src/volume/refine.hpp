@@ -14,7 +14,6 @@ namespace delfront {
 /// Rounds without a global queue: every fresh tet proposes at most one point, proposals are filtered, sorted along
 /// the Hilbert curve and inserted with the proposing tet as hint. Boundary faces and vertices stay.
 /// @pre, @post complex.find_defect() is empty
-RefineReport refine_complex(TetComplex& complex, const SizeField& size, const VolumeOptions& options,
-                            Context& context);
+RefineReport refine_complex(TetComplex& complex, const SizeField& size, const VolumeOptions& options, Context& context);
 
 }  // namespace delfront

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "delaunay/delaunay.hpp"
+#include "delaunay/territories.hpp"
 #include "support/tet_fixtures.hpp"
 
 namespace delfront {
@@ -143,6 +144,32 @@ TEST(Insertion, implicit_points_on_segments_are_exact) {
   c.segment_points.emplace(w, same);
   EXPECT_EQ(kernel.insert(w, 0), Insert::duplicate);
   EXPECT_EQ(kernel.duplicate_of, v);
+}
+
+/// In the order of a curve that is not the one of the territories: those must be told apart all the same.
+TEST(InsertBatch, any_number_of_threads_gives_the_same_complex) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(0.01, 0.99);
+  std::vector<Point> points(40000);
+  for (Point& p : points) p = {uniform(random), uniform(random), uniform(random)};
+  auto filled = [&](int threads) {
+    TetComplex c = fixtures::jittered_cube_with_wall(4, 0.3, 1);
+    std::vector<VertexIndex> vertices;
+    for (const Point& p : points) vertices.push_back(c.add_vertex(p, 1));
+    Context context;
+    context.threads = threads;
+    KernelCounts counts;
+    insert_batch(c, vertices, kConstrained, 0, counts, context);
+    EXPECT_GT(counts.points, 39000u);
+    return c;
+  };
+  const TetComplex expected = filled(1);
+  EXPECT_EQ(expected.find_defect(), "");
+  for (const int threads : {2, 3}) {
+    const TetComplex found = filled(threads);
+    EXPECT_EQ(found.node, expected.node);
+    EXPECT_EQ(found.neigh, expected.neigh);
+  }
 }
 
 }  // namespace

@@ -203,5 +203,21 @@ TEST(Generate, two_runs_and_any_number_of_threads_give_the_same_grid) {
   }
 }
 
+/// Large enough for several territories in the core and in refinement.
+TEST(Generate, any_number_of_threads_gives_the_same_grid) {
+  auto grid_of = [](int threads) {
+    Context context;
+    context.threads = threads;
+    return generate(sphere_model(4), sized(0.034), context);
+  };
+  const Outcome expected = grid_of(1), found = grid_of(3);
+  expect_valid(expected);
+  ASSERT_GT(expected.mesh.points.size(), 132000u);
+  EXPECT_GT(expected.report.refine.points_in_core, 16384u);
+  EXPECT_EQ(found.mesh.points, expected.mesh.points);
+  EXPECT_EQ(found.mesh.find_block(CellType::tetrahedron)->vertices,
+            expected.mesh.find_block(CellType::tetrahedron)->vertices);
+}
+
 }  // namespace
 }  // namespace delfront

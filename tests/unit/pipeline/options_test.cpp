@@ -236,6 +236,7 @@ Options unusual_options() {
       {"planar.boundary", "split"},
       {"planar.min_angle", "25"},
       {"volume.method", "none"},
+      {"volume.core", "false"},
       {"improve.enabled", "false"},
       {"improve.max_passes", "3"},
       {"improve.goals.min_dihedral", "9.5"},

@@ -119,7 +119,8 @@ TEST(Refine, no_two_points_are_nearer_than_seven_tenths_of_the_size) {
   double nearest = 1;
   for (VertexIndex v = static_cast<VertexIndex>(given); v < c.num_vertices(); ++v)
     for (VertexIndex w = 0; w < v; ++w)
-      if (c.vertex_tet[v] != kNoIndex && c.vertex_tet[w] != kNoIndex) nearest = std::min(nearest, distance(c.point(v), c.point(w)));
+      if (c.vertex_tet[v] != kNoIndex && c.vertex_tet[w] != kNoIndex)
+        nearest = std::min(nearest, distance(c.point(v), c.point(w)));
   EXPECT_GE(nearest, 0.7 * 0.12 * (1 - 1e-12));
 }
 
