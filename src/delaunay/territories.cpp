@@ -69,7 +69,7 @@ class Batch {
   void insert_round(const Vertices& round) {
     Vertices left = round;
     for (int curve = 0; curve < kNumCurves && left.size() >= kWorthTerritories; ++curve) {
-      key_along_curve(curve);
+      key_along_curve(curve, left);
       const auto is_before = [&](VertexIndex a, VertexIndex b) {
         return key_[a] != key_[b] ? key_[a] < key_[b] : a < b;
       };
@@ -87,11 +87,15 @@ class Batch {
     context_.progress("tetrahedralize", counts_.points + all_.counts.points, num_points_, "points");
   }
 
-  void key_along_curve(int number) {
+  void key_along_curve(int number, const Vertices& left) {
     key_.resize(c_.num_vertices());
     const HilbertCurve curve = curve_over(c_, number);
     parallel_ranges(context_.threads, key_.size(), kGrain, [&](std::size_t first, std::size_t last) {
-      for (std::size_t v = first; v < last; ++v) key_[v] = territory_key(curve.key(c_.vertex[v].point()));
+      for (std::size_t v = first; v < last; ++v)  // of those that tets have; the others' are not asked for
+        if (c_.vertex_tet[v] != kNoIndex) key_[v] = territory_key(curve.key(c_.vertex[v].point()));
+    });
+    parallel_ranges(context_.threads, left.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) key_[left[i]] = territory_key(curve.key(c_.vertex[left[i]].point()));
     });
   }
 
