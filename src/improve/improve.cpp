@@ -22,12 +22,17 @@ constexpr double kMaxWorkAngle = 32;       // degrees; a regular tet has 70, but
 constexpr double kCrowded = 0.4;           // of the wanted size: nearer neighbours than this are too many
 constexpr double kEnough = 1.5;            // times the quality worked for: good enough to look no further
 constexpr double kLeastScan = 1e-3;        // quality from which the search for the smallest angle starts
-constexpr double kFlat = 1;                // degrees: a cell below it is urgent ...
-constexpr double kUnexplained = 1e-2;      // ... if its quality is below that of the boundary there by this factor
+constexpr double kScarce = 0.01;           // of all cells: where fewer are bad, each is worth more trouble
 constexpr double kFlatToRounding = 1e-13;  // squared sine of 2e-5 degrees
 constexpr std::size_t kFreeUrgentTries = 300, kFreeFlatTries = 2000, kUrgentTriesForOne = 5;
 constexpr double kExplained = 0.25;  // of the boundary's quality: no more can be expected
 constexpr std::size_t kScanGrain = 1 << 15;
+
+/// A cell is urgent below an angle, degrees, if its quality is below that of the boundary there by a factor.
+struct Urgency {
+  double flat, unexplained;
+};
+constexpr Urgency kUsual{1, 0.01}, kWhereBadAreScarce{6, 0.1};
 
 /// One kind of operation, over the list of bad tets, in each pass from `first_pass` on.
 ///
@@ -229,7 +234,9 @@ bool Improver::is_urgent(TetIndex t) const {
   const bool is_flat = is_below(t, kFlatToRounding);
   const std::size_t free_tries = is_flat ? kFreeFlatTries : kFreeUrgentTries;
   if (urgent_tries_ > free_tries + kUrgentTriesForOne * urgent_done_) return false;
-  return is_below(t, quality_of_angle(kFlat)) && !is_explained(t, kUnexplained);
+  const bool are_scarce = static_cast<double>(bad_.size()) < kScarce * static_cast<double>(c_.num_live());
+  const Urgency& urgency = are_scarce ? kWhereBadAreScarce : kUsual;
+  return is_below(t, quality_of_angle(urgency.flat)) && !is_explained(t, urgency.unexplained);
 }
 
 bool Improver::insert(TetIndex t) {
