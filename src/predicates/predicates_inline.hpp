@@ -7,7 +7,7 @@
 // so that every computed entry is (exact entry)(1 + d) with |d| <= u, and at most X. All bounds below count terms of
 // order u; one more u pays for the terms of order u^2 and for rounding in the bound itself.
 // Underflow: with |coordinate| <= 2^100 a product that underflows is wrong by at most 2^-1075, which the factors that
-// follow make at most 2^-970 (orient3d) and 2^-765 (insphere); the kTiny constants pay for that, so that there is no
+// follow make at most 2^-970 (orient3d) and 2^-764 (insphere); the kTiny constants pay for that, so that there is no
 // smallest allowed difference.
 #include "predicates/predicates.hpp"
 
