@@ -13,11 +13,17 @@ namespace {
 constexpr std::size_t kLarge = std::size_t{1} << 21;  ///< from here on pages of their own, large ones where there are
 constexpr std::align_val_t kAlignment{64};
 
+void prefer_large_pages([[maybe_unused]] void* pages, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  madvise(pages, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost where it is not heard
+#endif
+}
+
 void* allocate(std::size_t bytes) {
   if (bytes < kLarge) return ::operator new(bytes, kAlignment);
   void* const pages = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (pages == MAP_FAILED) throw std::bad_alloc();
-  madvise(pages, bytes, MADV_HUGEPAGE);
+  prefer_large_pages(pages, bytes);
   return pages;
 }
 
@@ -35,7 +41,7 @@ void* move_memory(void* old, std::size_t old_bytes, std::size_t bytes) {
   if (old_bytes >= kLarge && bytes >= kLarge) {
     void* const moved = mremap(old, old_bytes, bytes, MREMAP_MAYMOVE);
     if (moved == MAP_FAILED) throw std::bad_alloc();
-    madvise(moved, bytes, MADV_HUGEPAGE);
+    prefer_large_pages(moved, bytes);
     return moved;
   }
 #endif

@@ -50,7 +50,8 @@ class DelaunayKernel {
     bool constrained = false;  ///< the complex is not Delaunay everywhere: make the cavity star-shaped, swallow nothing
   };
 
-  /// @brief Stay within a territory and make tets of these slots only, until leave(): for one thread among several.
+  /// @brief Stay within a territory and make tets of these slots, until leave(): for one thread among several. In a
+  /// territory that is everything the complex may grow beyond them.
   void enter(const Territory& territory, std::vector<TetIndex> slots);
   /// @return the slots that were not used, or have become free
   std::vector<TetIndex> leave();
@@ -106,7 +107,7 @@ class DelaunayKernel {
   bool make_star_shaped(TetIndex start);
   bool swallows_a_vertex() const;
   void clear_marks();
-  bool has_room() const { return !is_in_territory_ || slots_.size() + cavity_.size() >= ball_.faces.size(); }
+  bool has_room() const { return !is_confined() || slots_.size() + cavity_.size() >= ball_.faces.size(); }
   TetIndex take_slot();
   void fill_cavity(VertexIndex v);
   std::uint32_t random();

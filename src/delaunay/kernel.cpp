@@ -63,7 +63,7 @@ bool DelaunayKernel::is_ours(TetIndex t) const {
 }
 
 TetIndex DelaunayKernel::take_slot() {
-  if (!is_in_territory_) return c_.new_tet();
+  if (!is_in_territory_ || slots_.empty()) return c_.new_tet();
   const TetIndex t = slots_.back();
   slots_.pop_back();
   return t;
@@ -134,7 +134,7 @@ TetIndex DelaunayKernel::locate(VertexIndex v, TetIndex hint, std::uint64_t max_
     if (c_.is_ghost(t)) return t;
   }
   // A walk this long is wandering: in a complex that is not Delaunay it may do so for ever.
-  return max_steps > 0 || is_in_territory_ ? kNoIndex : scan(v);
+  return max_steps > 0 || is_confined() ? kNoIndex : scan(v);
 }
 
 TetIndex DelaunayKernel::scan(VertexIndex v) const {

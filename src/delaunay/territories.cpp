@@ -79,7 +79,8 @@ class Batch {
     std::sort(left.begin(), left.end());
     for (std::size_t i = 0; i < left.size(); ++i) {
       if (i % kPointsPerCancelCheck == 0) report_progress();
-      insert_one(all_, left[i]);
+      const auto result = insert_one(all_, left[i]);
+      DELFRONT_CHECK(limits_.constrained || result == DelaunayKernel::Insert::done);
     }
   }
 
@@ -108,7 +109,7 @@ class Batch {
     std::vector<Vertices> left(n);
     territories.run(key_.data(), context_.threads, [&](Territories::Part& part, std::size_t number) {
       for (std::size_t i = part.begin; i < part.end; ++i) {
-        if (i % kPointsPerCancelCheck == 0 && is_cancelled()) break;
+        if (i % kPointsPerCancelCheck == 0) context_.check_limits();
         if (insert_one(part.kernel, points[i]) == DelaunayKernel::Insert::not_ours) left[number].push_back(points[i]);
       }
     });
@@ -118,17 +119,15 @@ class Batch {
     return all_left;
   }
 
-  bool is_cancelled() const { return context_.cancel && context_.cancel->load(std::memory_order_relaxed); }
-
-  DelaunayKernel::Insert insert_one(DelaunayKernel& kernel, VertexIndex v) const {
+  DelaunayKernel::Insert insert_one(DelaunayKernel& kernel, VertexIndex v) {
     const TetIndex start = find_start(kernel, v);
     if (start == kNoIndex) return DelaunayKernel::Insert::not_ours;
     const TetIndex holder = kernel.locate(v, start, limits_.constrained ? kMaxSteps : 0);
     return holder == kNoIndex ? DelaunayKernel::Insert::not_ours : kernel.insert_into(holder, v, limits_);
   }
 
-  /// A tet of ours at a vertex that lies near v along the first curve; else the last one made.
-  TetIndex find_start(const DelaunayKernel& kernel, VertexIndex v) const {
+  /// A tet of ours at a vertex that lies near v along the first curve; else the last one made, or any.
+  TetIndex find_start(const DelaunayKernel& kernel, VertexIndex v) {
     constexpr VertexIndex kReach = 32;
     auto start_at = [&](VertexIndex w) {
       if (w >= c_.num_vertices() || !kernel.holds(w)) return kNoIndex;
@@ -138,13 +137,15 @@ class Batch {
     for (VertexIndex reach = 1; reach <= kReach; ++reach)
       for (const VertexIndex w : {v - reach, v + reach})
         if (const TetIndex t = start_at(w); t != kNoIndex) return t;
-    if (kernel.last_tet != kNoIndex) return kernel.last_tet;
-    return kernel.is_confined() || c_.is_dead(start_) ? kNoIndex : start_;
+    if (kernel.last_tet != kNoIndex && !c_.is_dead(kernel.last_tet)) return kernel.last_tet;
+    if (kernel.is_confined()) return kNoIndex;
+    while (c_.is_dead(start_)) start_ = static_cast<TetIndex>((start_ + 1) % c_.num_slots());
+    return start_;
   }
 
   TetComplex& c_;
   const DelaunayKernel::Limits limits_;
-  const TetIndex start_;
+  TetIndex start_;
   KernelCounts& counts_;
   Context& context_;
   DelaunayKernel all_;  ///< for what is put in one by one

@@ -15,6 +15,11 @@ std::array<VertexIndex, 3> sorted(std::array<VertexIndex, 3> n) {
   return n;
 }
 
+void check_num_slots(std::size_t slots) {
+  if (slots > TetComplex::kMaxSlots)
+    throw LimitError("stopped: a grid of more than 1,073,741,824 cells at a time cannot be made; ask for larger sizes");
+}
+
 std::uint32_t hash_face(const std::array<VertexIndex, 3>& key) {
   std::uint64_t h = key[0] * 0x9e3779b97f4a7c15ull;
   h = (h ^ (h >> 29) ^ key[1]) * 0xbf58476d1ce4e5b9ull;
@@ -60,7 +65,7 @@ TetIndex TetComplex::new_tet() {
     return t;
   }
   const std::size_t t = flag.size();
-  DELFRONT_CHECK(t < (std::size_t{1} << 30));
+  check_num_slots(t + 1);
   flag.push_back(0);
   node.resize(node.size() + 4, kNoIndex);
   neigh.resize(neigh.size() + 4, kNoIndex);
@@ -78,7 +83,7 @@ std::vector<TetIndex> TetComplex::take_slots(std::size_t count) {
   std::vector<TetIndex> slots(free_.end() - static_cast<std::ptrdiff_t>(reused), free_.end());
   free_.resize(free_.size() - reused);
   const std::size_t first = num_slots(), total = first + count - reused;
-  DELFRONT_CHECK(total < (std::size_t{1} << 30));
+  check_num_slots(total);
   flag.resize(total, dead);
   node.resize(4 * total);
   neigh.resize(4 * total);

@@ -69,6 +69,7 @@ class TetComplex {
   std::unordered_map<VertexIndex, ExactPoint> segment_points;
 
   static constexpr std::uint32_t kOutside = 0xffffffffu;
+  static constexpr std::size_t kMaxSlots = std::size_t{1} << 30;  ///< what a FaceRef of 32 bits can tell apart
 
   std::size_t num_slots() const { return flag.size(); }
   std::size_t num_live() const { return flag.size() - free_.size(); }

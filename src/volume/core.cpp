@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes of lattice cells are halved until they are clear of the boundary and in the plateau of the size field, or one
-// cell large, where each point is tried. Boxes are numbered by cells, so the lattice is the same for any cut.
+// Boxes of lattice cells are halved, a level at a time, until they are clear of the boundary and in the plateau of the
+// size field, or one cell large, where each point is tried. Boxes are numbered by cells, so the lattice is the same for
+// any cut.
 #include "volume/core.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +15,7 @@
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
 #include "delaunay/territories.hpp"
+#include "delfront/errors.hpp"
 #include "spatial/bvh.hpp"
 
 namespace delfront {
@@ -24,25 +28,28 @@ constexpr double kJitter = 1e-4;      ///< of a lattice cell
 constexpr double kPlateau = 1 - 1e-9;
 constexpr double kWorth = 4;  ///< lattice cells along the longest side; in less there is no core
 constexpr std::int64_t kMaxCells = std::int64_t{1} << 20;  ///< a side
-constexpr int kTaskLevels = 3;                             ///< 8^3 boxes are shared out to threads
+constexpr std::size_t kCellsPerPoint = 6;                  ///< tets that a lattice point stands for
+constexpr std::size_t kGrain = 1 << 8;                     ///< boxes that a thread takes at a time
 
 /// The side of a lattice cell whose tets have the volume of regular ones of side 1: a^3 / 12 = 1 / (6 sqrt(2)).
 const double kCellSide = std::cbrt(std::sqrt(2.0));
 
+/// A cube of lattice cells. `near`: a vertex of the boundary in the neighbourhood.
 struct CellBox {
   std::int64_t i, j, k, side;
+  VertexIndex near;
 };
 
-/// A box of points that is clear of the boundary: inside or outside as a whole. `near`: a vertex of the boundary.
-struct Cluster {
-  Point centre;
+/// A lattice point by itself, where its cell is not clear of the boundary.
+struct Single {
+  Point at;
   VertexIndex near;
-  std::size_t end;  ///< of the points; the begin is the end of the one before
 };
 
 struct Found {
-  std::vector<Point> points;
-  std::vector<Cluster> clusters;
+  std::vector<CellBox> clear;  ///< of the boundary: inside or outside as a whole
+  std::vector<CellBox> finer;  ///< to be looked at
+  std::vector<Single> singles;
 };
 
 class Core {
@@ -56,17 +63,20 @@ class Core {
     const double cells = box_.longest_side() / a_;
     if (!(cells >= kWorth && cells < static_cast<double>(kMaxCells))) return 0;
     const auto side = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(std::ceil(cells))));
-    std::vector<CellBox> tasks = {{0, 0, 0, side}};
-    for (int level = 0; level < kTaskLevels && tasks[0].side > 1; ++level) {
-      std::vector<CellBox> finer;
-      for (const CellBox& box : tasks) for_each_octant(box, [&](const CellBox& octant) { finer.push_back(octant); });
-      tasks.swap(finer);
-    }
-    std::vector<Found> found(tasks.size());
-    parallel_for(context_.threads, tasks.size(),
-                 [&](std::size_t i) { search(tasks[i], vertex_of_triangle_[0], found[i]); });
+    std::vector<CellBox> boxes = {{0, 0, 0, side, vertex_of_triangle_[0]}};
     std::vector<Point> points;
-    for (const Found& f : found) keep_inside(f, points);
+    while (!boxes.empty()) {  // large ones first, so that too many points are told early
+      context_.check_limits();
+      std::vector<Found> found((boxes.size() + kGrain - 1) / kGrain);
+      parallel_ranges(context_.threads, boxes.size(), kGrain, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) look_at(boxes[i], found[first / kGrain]);
+      });
+      boxes.clear();
+      for (const Found& f : found) {
+        keep_inside(f, points);
+        boxes.insert(boxes.end(), f.finer.begin(), f.finer.end());
+      }
+    }
     return insert(points);
   }
 
@@ -88,11 +98,10 @@ class Core {
     boundary_ = Bvh(triangles);
   }
 
-  template <class Visit>
-  static void for_each_octant(const CellBox& b, Visit visit) {
+  static void halve(const CellBox& b, VertexIndex near, std::vector<CellBox>& finer) {
     const std::int64_t s = b.side / 2;
     for (int octant = 0; octant < 8; ++octant)
-      visit(CellBox{b.i + (octant & 1) * s, b.j + (octant >> 1 & 1) * s, b.k + (octant >> 2) * s, s});
+      finer.push_back({b.i + (octant & 1) * s, b.j + (octant >> 1 & 1) * s, b.k + (octant >> 2) * s, s, near});
   }
 
   Point at(double i, double j, double k) const { return box_.low + Point{a_ * i, a_ * j, a_ * k}; }
@@ -115,55 +124,67 @@ class Core {
     return near;
   }
 
-  /// @param near  a vertex of the boundary in the neighbourhood
-  void search(const CellBox& b, VertexIndex near, Found& found) const {
+  void look_at(const CellBox& b, Found& found) const {
     const auto i = static_cast<double>(b.i), j = static_cast<double>(b.j), k = static_cast<double>(b.k);
     const auto s = static_cast<double>(b.side);
     const Box box{at(i, j, k), at(i + s, j + s, k + s)};
     if (!box.overlaps(box_)) return;
     const std::uint32_t triangle = find_near(box);
     if (triangle == kNoIndex && size_.lower_bound(box) >= kPlateau * h_) {
-      add_all(b, found);
-      found.clusters.push_back({box.centre(), near, found.points.size()});
+      found.clear.push_back(b);
       return;
     }
-    if (triangle != kNoIndex) near = vertex_of_triangle_[triangle];
+    const VertexIndex near = triangle == kNoIndex ? b.near : vertex_of_triangle_[triangle];
     if (b.side > 1) {
-      for_each_octant(b, [&](const CellBox& octant) { search(octant, near, found); });
+      halve(b, near, found.finer);
     } else {
       try_point(lattice_point(i, j, k), near, found);
       try_point(lattice_point(i + 0.5, j + 0.5, k + 0.5), near, found);
     }
   }
 
-  void add_all(const CellBox& b, Found& found) const {
+  void try_point(const Point& p, VertexIndex near, Found& found) const {
+    if (find_near({p, p}) != kNoIndex || size_.size(p) < kPlateau * h_) return;
+    found.singles.push_back({p, near});
+  }
+
+  /// Whether a place lies in a tet that is kept.
+  bool is_inside(const Point& p, VertexIndex near) {
+    const VertexIndex v = c_.add_vertex(p, h_);
+    const TetIndex t = kernel_.locate(v, c_.vertex_tet[near], kMaxSteps);
+    c_.remove_last_vertex();
+    return t != kNoIndex && !c_.is_ghost(t);
+  }
+
+  void keep_inside(const Found& found, std::vector<Point>& points) {
+    for (const CellBox& b : found.clear) {
+      const double half = static_cast<double>(b.side) / 2;
+      const Point centre =
+          at(static_cast<double>(b.i) + half, static_cast<double>(b.j) + half, static_cast<double>(b.k) + half);
+      if (is_inside(centre, b.near)) add_all(b, points);
+    }
+    for (const auto& [p, near] : found.singles)
+      if (is_inside(p, near)) points.push_back(p);
+  }
+
+  void add_all(const CellBox& b, std::vector<Point>& points) const {
+    // Before they are made, so that a size far too small ends in a message, not in a lack of memory.
+    const auto side = static_cast<std::size_t>(b.side);
+    check_num_cells(kCellsPerPoint * (points.size() + 2 * side * side * side));
     for (std::int64_t k = b.k; k < b.k + b.side; ++k)
       for (std::int64_t j = b.j; j < b.j + b.side; ++j)
         for (std::int64_t i = b.i; i < b.i + b.side; ++i) {
           const auto x = static_cast<double>(i), y = static_cast<double>(j), z = static_cast<double>(k);
-          found.points.push_back(lattice_point(x, y, z));
-          found.points.push_back(lattice_point(x + 0.5, y + 0.5, z + 0.5));
+          points.push_back(lattice_point(x, y, z));
+          points.push_back(lattice_point(x + 0.5, y + 0.5, z + 0.5));
         }
   }
 
-  void try_point(const Point& p, VertexIndex near, Found& found) const {
-    if (find_near({p, p}) != kNoIndex || size_.size(p) < kPlateau * h_) return;
-    found.points.push_back(p);
-    found.clusters.push_back({p, near, found.points.size()});
-  }
-
-  /// Clusters whose centre lies in a tet that is kept.
-  void keep_inside(const Found& found, std::vector<Point>& points) {
-    std::size_t begin = 0;
-    for (const Cluster& cluster : found.clusters) {
-      const VertexIndex v = c_.add_vertex(cluster.centre, h_);
-      const TetIndex t = kernel_.locate(v, c_.vertex_tet[cluster.near], kMaxSteps);
-      c_.remove_last_vertex();
-      if (t != kNoIndex && !c_.is_ghost(t))
-        points.insert(points.end(), found.points.begin() + static_cast<std::ptrdiff_t>(begin),
-                      found.points.begin() + static_cast<std::ptrdiff_t>(cluster.end));
-      begin = cluster.end;
-    }
+  void check_num_cells(std::size_t cells) const {
+    context_.check_cells(cells);
+    if (cells > TetComplex::kMaxSlots)
+      throw LimitError(fmt::format("stopped: cells of size {:g} would be more than {} in number; ask for larger ones",
+                                   h_, TetComplex::kMaxSlots));
   }
 
   std::size_t insert(const std::vector<Point>& points) {

@@ -25,6 +25,7 @@ constexpr double kRegularRadius = 0.61237243569579452;  ///< circumradius of a r
 constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;      ///< of the wanted size, between points
 constexpr std::uint64_t kMaxSteps = 1000;  ///< to a proposal's tet, 5 on average: beyond, a walk among slivers wanders
+constexpr std::size_t kPointsPerCancelCheck = 4096;
 constexpr std::size_t kRecent = 16;        ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
 constexpr std::size_t kGrain = 1 << 12;
@@ -118,7 +119,7 @@ class Refinement {
     std::vector<TetIndex> fresh;
     std::vector<TetIndex> left;  ///< tets whose proposals have to wait
     Recent recent;
-    std::size_t inserted = 0;
+    std::size_t inserted = 0, tried = 0;
   };
 
   static constexpr std::size_t kCurves = 2;
@@ -303,7 +304,10 @@ class Refinement {
   void insert_in(Territories::Part& part, Work& work) {
     for (unsigned pass = 0; pass < kPasses; ++pass)
       for (std::size_t k = part.begin; k < part.end; ++k)
-        if (pass_of(k) == pass) insert_proposal(part.kernel, work, k);
+        if (pass_of(k) == pass) {
+          if (work.tried++ % kPointsPerCancelCheck == 0) context_.check_limits();
+          insert_proposal(part.kernel, work, k);
+        }
   }
 
   static unsigned pass_of(std::size_t k) {
@@ -341,6 +345,7 @@ class Refinement {
     work.vertices.pop_back();
     set_keys(v);
     work.recent.add(p.at);
+    if (!kernel.is_confined()) state_.resize(c_.num_slots(), 0);  // it may have grown
     for (const TetIndex t : kernel.made()) {
       if (!(state_[t] & queued)) work.fresh.push_back(t);
       state_[t] = queued;

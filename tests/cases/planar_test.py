@@ -8,7 +8,7 @@ import unittest
 
 import case
 
-CHECKER = case.ROOT.parent / "shared" / "tools" / "check_mesh.py"
+CHECKER = case.SHARED.parent / "tools" / "check_mesh.py"
 SQUARE = "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n"
 
 

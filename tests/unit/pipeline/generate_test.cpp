@@ -189,6 +189,14 @@ TEST(Generate, limits_of_cells_and_time_end_the_run) {
   EXPECT_THROW(generate(sphere_model(3), sized(0.08), hasty), LimitError);
 }
 
+TEST(Generate, a_size_far_too_small_ends_before_memory_does) {
+  for (const double size : {3e-4, 1e-4, 1e-5}) {
+    SCOPED_TRACE(size);
+    Context context;
+    EXPECT_THROW(generate(sphere_model(3), sized(size), context), LimitError);
+  }
+}
+
 TEST(Generate, two_runs_and_any_number_of_threads_give_the_same_grid) {
   auto run = [](int threads) {
     Context context;
