@@ -123,7 +123,7 @@ bool is_before(const Point& a, const Point& b) {
 }
 
 /// Items of one cell: along a curve of their own, or where those are few, by coordinates.
-void sort_crowd(std::span<const Point> points, std::span<std::pair<std::uint64_t, std::uint32_t>> items) {
+void sort_crowd(PointView points, std::span<std::pair<std::uint64_t, std::uint32_t>> items) {
   Box box;
   for (const auto& item : items) box.add(points[item.second]);
   if (items.size() <= kCrowd || !(box.longest_side() > 0)) {
@@ -163,10 +163,10 @@ void radix_sort(Items& items, int threads) {
   }
 }
 
-std::vector<std::uint32_t> hilbert_order(std::span<const Point> points, int threads) {
+std::vector<std::uint32_t> hilbert_order(PointView points, int threads) {
   constexpr std::size_t kGrain = 1 << 14;
   Box box;
-  for (const Point& p : points) box.add(p);
+  for (std::size_t i = 0; i < points.size(); ++i) box.add(points[i]);
   const HilbertCurve curve(box);
   Items items(points.size());
   parallel_ranges(threads, points.size(), kGrain, [&](std::size_t first, std::size_t last) {

@@ -19,10 +19,28 @@ class HilbertCurve {
   double scale_[3];
 };
 
+/// @brief Points of three doubles each, which may stand in larger records.
+class PointView {
+ public:
+  PointView(std::span<const Point> points) : PointView(points.empty() ? nullptr : &points[0].x, 3, points.size()) {}
+  PointView(const std::vector<Point>& points) : PointView(std::span(points)) {}
+  /// @param stride  doubles from one point to the next
+  PointView(const double* first, std::size_t stride, std::size_t size) : first_(first), stride_(stride), size_(size) {}
+  std::size_t size() const { return size_; }
+  Point operator[](std::size_t i) const {
+    const double* const p = first_ + i * stride_;
+    return {p[0], p[1], p[2]};
+  }
+
+ private:
+  const double* first_;
+  std::size_t stride_, size_;
+};
+
 /// @brief Indices of `points` in Hilbert order; where a cell of the finest level holds many points, in the order of a
 /// finer curve through them. Equal points are neighbours, by index. Deterministic.
 /// @par Cost  O(n), radix sort
-std::vector<std::uint32_t> hilbert_order(std::span<const Point> points, int threads = 1);
+std::vector<std::uint32_t> hilbert_order(PointView points, int threads = 1);
 
 /// @brief Sort (key, value) pairs by key, stable. @par Cost O(n)
 void radix_sort(std::vector<std::pair<std::uint64_t, std::uint32_t>>& items, int threads = 1);

@@ -18,32 +18,35 @@ void Ball::number_vertices() {
   if (!is_small_) number_many();
 }
 
-/// @return false where there are more than the tables hold
+/// Through a table by hash that is never cleared: the first pass writes what the second one reads. No branch depends on
+/// which vertices are new, which no processor can guess.
+/// @return false where there are more than the tables hold, or two have the same place
 bool Ball::number_few() {
-  std::fill(few_, few_ + kPlaces, kNone);
-  face_of_slot_.reserve(kTable);
+  face_of_slot_.reserve(3 * kTableFaces);
   std::uint32_t* const face_of_slot = face_of_slot_.data();
   Face* const all = faces.data();
   const auto n = static_cast<std::uint32_t>(faces.size());
-  std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < n; ++i)
     for (unsigned k = 0; k < 3; ++k) {
-      const VertexIndex v = all[i].node[k];
-      std::uint32_t at = (v * kHash) >> kShift;
-      while (few_[at] != v) {
-        if (few_[at] == kNone) {
-          if (count == kTableVertices) return false;
-          few_[at] = v;
-          few_slot_[at] = count;
-          face_of_slot[count++] = 4 * i + k;
-          break;
-        }
-        at = (at + 1) % kPlaces;
-      }
-      all[i].slot[k] = few_slot_[at];
+      const std::uint32_t at = place_of(all[i].node[k]);
+      few_[at] = all[i].node[k];
+      few_slot_[at] = kNewSlot;
+    }
+  std::uint32_t count = 0;
+  bool is_clear = true;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (unsigned k = 0; k < 3; ++k) {
+      const std::uint32_t at = place_of(all[i].node[k]);
+      is_clear &= few_[at] == all[i].node[k];
+      const bool is_new = few_slot_[at] == kNewSlot;
+      const std::uint32_t slot = is_new ? count : few_slot_[at];
+      face_of_slot[count] = 4 * i + k;
+      count += is_new;
+      few_slot_[at] = static_cast<std::uint8_t>(slot);
+      all[i].slot[k] = slot;
     }
   face_of_slot_.resize(count);
-  return true;
+  return is_clear && count <= kTableVertices;
 }
 
 std::uint32_t Ball::find(VertexIndex v) const {
@@ -73,9 +76,10 @@ void Ball::number_many() {
 
 bool Ball::has_vertex(VertexIndex v) const {
   if (!is_small_) return many_[find(v)].vertex == v;
-  std::uint32_t at = (v * kHash) >> kShift;
-  while (few_[at] != v && few_[at] != kNone) at = (at + 1) % kPlaces;
-  return few_[at] == v;
+  const std::uint32_t slot = few_slot_[place_of(v)];  // perhaps of an earlier ball
+  if (slot >= face_of_slot_.size()) return false;
+  const std::uint32_t first = face_of_slot_[slot];
+  return faces[first >> 2].node[first & 3] == v;
 }
 
 void Ball::write_tets(TetComplex& complex, VertexIndex v, const std::vector<TetIndex>& made, std::uint32_t region) {

@@ -30,7 +30,8 @@ class Ball {
 
  private:
   static constexpr std::uint32_t kTableVertices = 31, kTableFaces = 58, kTable = 32;
-  static constexpr std::uint32_t kPlaces = 64, kShift = 26;
+  static constexpr std::uint32_t kPlaceBits = 11, kPlaces = 1 << kPlaceBits;
+  static constexpr std::uint8_t kNewSlot = 255;
   static constexpr VertexIndex kNone = 0xfffffffeu;
   static constexpr std::uint32_t kHash = 0x9e3779b1u;
 
@@ -40,13 +41,14 @@ class Ball {
   };
   bool number_few();
   void number_many();
+  static std::uint32_t place_of(VertexIndex v) { return (v * kHash) >> (32 - kPlaceBits); }
   std::uint32_t find(VertexIndex v) const;
   void bond_by_table(TetComplex& complex, const std::vector<TetIndex>& made);
   void bond_by_hash(TetComplex& complex, const std::vector<TetIndex>& made);
 
   bool is_small_ = false;
-  VertexIndex few_[kPlaces] = {};  ///< hash table of a small ball's vertices, and their slots
-  std::uint32_t few_slot_[kPlaces] = {};
+  VertexIndex few_[kPlaces] = {};  ///< a small ball's vertices by hash, and their slots
+  std::uint8_t few_slot_[kPlaces] = {};
   FlatArray<Numbered> many_;  ///< the same for a large ball, at most a quarter full
   std::uint32_t many_shift_ = 0;
   FlatArray<std::uint32_t> face_of_slot_;

@@ -64,16 +64,12 @@ class Builder {
 
  private:
   void renumber_along_curve() {
-    std::vector<Point> points(c_.num_vertices());
-    for (std::size_t v = 0; v < points.size(); ++v) points[v] = c_.vertex[v].point();
-    original_ = hilbert_order(points, context_.threads);
-    points = {};
-    FlatArray<TetVertex> sorted;
-    sorted.resize(original_.size());
+    original_ = hilbert_order(c_.places(), context_.threads);
+    unsorted_.resize(original_.size());
+    unsorted_.swap(c_.vertex);
     parallel_ranges(context_.threads, original_.size(), kGrain, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) sorted[i] = c_.vertex[original_[i]];
+      for (std::size_t i = first; i < last; ++i) c_.vertex[i] = unsorted_[original_[i]];
     });
-    c_.vertex.swap(sorted);
     is_duplicate_.assign(original_.size(), 0);
   }
 
@@ -93,17 +89,12 @@ class Builder {
   }
 
   void restore_numbers() {
-    FlatArray<TetVertex> vertices;
+    c_.vertex.swap(unsorted_);
     FlatArray<TetIndex> tets;
-    vertices.resize(original_.size());
     tets.resize(original_.size());
     parallel_ranges(context_.threads, original_.size(), kGrain, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        vertices[original_[i]] = c_.vertex[i];
-        tets[original_[i]] = c_.vertex_tet[i];
-      }
+      for (std::size_t i = first; i < last; ++i) tets[original_[i]] = c_.vertex_tet[i];
     });
-    c_.vertex.swap(vertices);
     c_.vertex_tet.swap(tets);
     parallel_ranges(context_.threads, c_.node.size(), kGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
@@ -114,6 +105,7 @@ class Builder {
   TetComplex& c_;
   Context& context_;
   std::vector<VertexIndex> original_;  ///< by place along the curve
+  FlatArray<TetVertex> unsorted_;
   std::vector<std::uint8_t> is_duplicate_;
 };
 

@@ -52,9 +52,9 @@ class DelaunayKernel {
 
   /// @brief Stay within a territory and make tets of these slots, until leave(): for one thread among several. In a
   /// territory that is everything the complex may grow beyond them.
-  void enter(const Territory& territory, std::vector<TetIndex> slots);
+  void enter(const Territory& territory, SlotStock slots);
   /// @return the slots that were not used, or have become free
-  std::vector<TetIndex> leave();
+  SlotStock leave();
   /// @brief Whether all vertices of a tet are ours: only then may it be read.
   bool is_ours(TetIndex t) const;
   bool holds(VertexIndex v) const { return territory_.holds(v); }
@@ -115,7 +115,7 @@ class DelaunayKernel {
   TetComplex& c_;
   Territory territory_;
   bool is_in_territory_ = false;
-  std::vector<TetIndex> slots_;  ///< of the territory
+  SlotStock slots_;  ///< of the territory
   std::vector<TetIndex> made_;
   FlatArray<TetIndex> cavity_;
   FlatArray<FaceRef> border_;         ///< faces of the cavity, from inside

@@ -45,13 +45,13 @@ std::uint32_t DelaunayKernel::random() {
   return random_state_ >> 16;
 }
 
-void DelaunayKernel::enter(const Territory& territory, std::vector<TetIndex> slots) {
+void DelaunayKernel::enter(const Territory& territory, SlotStock slots) {
   territory_ = territory;
   is_in_territory_ = true;
   slots_ = std::move(slots);
 }
 
-std::vector<TetIndex> DelaunayKernel::leave() {
+SlotStock DelaunayKernel::leave() {
   territory_ = {};
   is_in_territory_ = false;
   return std::exchange(slots_, {});
@@ -62,12 +62,7 @@ bool DelaunayKernel::is_ours(TetIndex t) const {
   return territory_.holds(n[0]) && territory_.holds(n[1]) && territory_.holds(n[2]) && territory_.holds(n[3]);
 }
 
-TetIndex DelaunayKernel::take_slot() {
-  if (!is_in_territory_ || slots_.empty()) return c_.new_tet();
-  const TetIndex t = slots_.back();
-  slots_.pop_back();
-  return t;
-}
+TetIndex DelaunayKernel::take_slot() { return !is_in_territory_ || slots_.size() == 0 ? c_.new_tet() : slots_.take(); }
 
 void DelaunayKernel::start(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) {
   if (c_.orient(a, b, c, d) < 0) std::swap(a, b);
@@ -414,7 +409,7 @@ void DelaunayKernel::fill_cavity(VertexIndex v) {
       c_.kill_tet(cavity_[i]);
     } else {
       c_.bury_tet(cavity_[i]);
-      slots_.push_back(cavity_[i]);
+      slots_.give(cavity_[i]);
     }
   }
   ball_.write_tets(c_, v, made_, colour);

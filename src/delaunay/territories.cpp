@@ -170,6 +170,7 @@ HilbertCurve curve_over(const TetComplex& complex, int number) {
 Territories::Territories(TetComplex& complex, std::size_t num_parts, std::size_t num_items,
                          const std::function<std::uint32_t(std::size_t)>& key_of_item, std::size_t slots_per_item)
     : c_(complex) {
+  parts_.reserve(num_parts);
   auto begin_of = [&](std::size_t i) { return i * num_items / num_parts; };
   for (std::size_t i = 0; i < num_parts; ++i) {
     const std::size_t begin = begin_of(i), end = begin_of(i + 1);
@@ -198,7 +199,6 @@ void Territories::run(const std::uint32_t* key_of_vertex, int threads,
 void Territories::finish(KernelCounts& counts) {
   for (Part& part : parts_) {
     c_.give_slots(part.slots);
-    part.slots.clear();
     add_counts(counts, part.kernel.counts);
     part.kernel.counts = {};
   }

@@ -25,7 +25,7 @@ class Territories {
   struct Part {
     std::size_t begin, end;  ///< items
     Territory territory;
-    std::vector<TetIndex> slots;
+    SlotStock slots;
     DelaunayKernel kernel;
   };
 

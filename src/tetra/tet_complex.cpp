@@ -78,9 +78,9 @@ void TetComplex::kill_tet(TetIndex t) {
   free_.push_back(t);
 }
 
-std::vector<TetIndex> TetComplex::take_slots(std::size_t count) {
+SlotStock TetComplex::take_slots(std::size_t count) {
   const std::size_t reused = std::min(count, free_.size());
-  std::vector<TetIndex> slots(free_.end() - static_cast<std::ptrdiff_t>(reused), free_.end());
+  std::vector<TetIndex> used(free_.end() - static_cast<std::ptrdiff_t>(reused), free_.end());
   free_.resize(free_.size() - reused);
   const std::size_t first = num_slots(), total = first + count - reused;
   check_num_slots(total);
@@ -88,12 +88,11 @@ std::vector<TetIndex> TetComplex::take_slots(std::size_t count) {
   node.resize(4 * total);
   neigh.resize(4 * total);
   region.resize(total);
-  for (std::size_t t = total; t > first; --t) slots.push_back(static_cast<TetIndex>(t - 1));
-  return slots;
+  return {std::move(used), static_cast<TetIndex>(first), static_cast<TetIndex>(total)};
 }
 
-void TetComplex::give_slots(std::span<const TetIndex> slots) {
-  for (const TetIndex t : slots) kill_tet(t);
+void TetComplex::give_slots(SlotStock& stock) {
+  while (stock.size() > 0) kill_tet(stock.take());
 }
 
 std::vector<VertexIndex> TetComplex::take_vertices(std::size_t count) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/flat_array.hpp"
+#include "base/hilbert.hpp"
 #include "delfront/point.hpp"
 #include "predicates/predicates.hpp"
 
@@ -40,6 +41,28 @@ struct alignas(32) TetVertex {
   double x, y, z;
   double h = 0;
   Point point() const { return {x, y, z}; }
+};
+
+/// @brief Dead slots that one thread makes tets of: some that were used before, and a range that never was.
+class SlotStock {
+ public:
+  SlotStock() = default;
+  SlotStock(std::vector<TetIndex> used, TetIndex first, TetIndex end)
+      : used_(std::move(used)), next_(first), end_(end) {}
+
+  std::size_t size() const { return used_.size() + (end_ - next_); }
+  /// @pre size() > 0
+  TetIndex take() {
+    if (used_.empty()) return next_++;
+    const TetIndex t = used_.back();
+    used_.pop_back();
+    return t;
+  }
+  void give(TetIndex t) { used_.push_back(t); }
+
+ private:
+  std::vector<TetIndex> used_;
+  TetIndex next_ = 0, end_ = 0;
 };
 
 /// @brief A tetrahedral complex on flat arrays: what the Delaunay engine builds and improvement edits.
@@ -87,13 +110,16 @@ class TetComplex {
     set_constrained(neigh[ref], on);
   }
   Point point(VertexIndex v) const { return vertex[v].point(); }
+  PointView places() const {
+    return {vertex.empty() ? nullptr : &vertex[0].x, sizeof(TetVertex) / sizeof(double), vertex.size()};
+  }
 
   /// @brief A slot for a new tet: reuses dead ones, last freed first. Its arrays are not cleared but for the flags.
   TetIndex new_tet();
   void kill_tet(TetIndex t);
   /// @brief Take `count` dead slots out of the complex, for a thread to make tets of: give_slots() takes back the rest.
-  std::vector<TetIndex> take_slots(std::size_t count);
-  void give_slots(std::span<const TetIndex> slots);
+  SlotStock take_slots(std::size_t count);
+  void give_slots(SlotStock& stock);
   /// @brief Mark a slot dead without taking it back.
   void bury_tet(TetIndex t) {
     flag[t] = dead;

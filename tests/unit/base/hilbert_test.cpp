@@ -63,7 +63,7 @@ TEST(Hilbert, order_is_a_permutation_with_equal_points_by_index) {
       ++runs;
   }
   EXPECT_EQ(runs, 343u) << "equal points must stand together";
-  EXPECT_TRUE(hilbert_order({}).empty());
+  EXPECT_TRUE(hilbert_order(std::vector<Point>()).empty());
 }
 
 TEST(RadixSort, agrees_with_a_stable_sort) {
