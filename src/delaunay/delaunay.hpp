@@ -90,7 +90,8 @@ class DelaunayKernel {
   TetIndex scan(VertexIndex v) const;
   template <class View>
   bool in_conflict(const View& view, TetIndex t, VertexIndex v);
-  Faces look_across(TetIndex t, VertexIndex v, double min_distance);
+  Faces look_across(TetIndex t, VertexIndex v, unsigned open, bool with_sides, double min_distance);
+  bool is_inside_exactly(FaceRef face, VertexIndex v, bool is_tie);
   template <class View>
   Faces look_across_exactly(const View& view, TetIndex t, VertexIndex v, double min_distance);
   Insert insert_checked(VertexIndex v, TetIndex start, const Limits& limits);

@@ -172,44 +172,55 @@ DelaunayKernel::Faces DelaunayKernel::look_across_exactly(const View& view, TetI
   return {static_cast<std::uint8_t>(inside), static_cast<std::uint8_t>(seen), static_cast<std::uint8_t>(close)};
 }
 
-/// Which neighbours of cavity tet t are in conflict with v, which of its faces see v, which apexes are too close.
-DelaunayKernel::Faces DelaunayKernel::look_across(TetIndex t, VertexIndex v, double min_distance) {
+/// Which neighbours of cavity tet t are in conflict with v, which of its faces see v, which apexes are too close: where
+/// the first filter leaves something open, or ghosts are about.
+/// @param open        faces whose neighbours are to be told
+/// @param with_sides  whether all of `seen` is wanted
+DelaunayKernel::Faces DelaunayKernel::look_across(TetIndex t, VertexIndex v, unsigned open, bool with_sides,
+                                                  double min_distance) {
   if (!c_.segment_points.empty()) return look_across_exactly(ExactView{c_}, t, v, min_distance);
   if (c_.is_ghost(t)) return look_across_exactly(ExplicitView{c_}, t, v, min_distance);
   const TetVertex *corner[4], *apex[4];
-  unsigned ghosts = 0;
+  unsigned ghosts = 0, close = 0;
   for (unsigned f = 0; f < 4; ++f) {
     corner[f] = &c_.vertex[c_.node[4 * t + f]];
     const VertexIndex w = c_.node[c_.neigh[4 * t + f]];
     ghosts |= static_cast<unsigned>(w == kGhost) << f;
     apex[f] = w == kGhost ? corner[f] : &c_.vertex[w];
+    const bool is_close = squared_length(apex[f]->point() - c_.point(v)) < min_distance * min_distance;
+    close |= static_cast<unsigned>(is_close) << f;
   }
-  FaceTests tests = test_faces<true>(corner, apex, c_.vertex[v], min_distance * min_distance);
+  FaceTests tests = test_faces_twofold(corner, apex, c_.vertex[v]);
   counts.insphere_tests += 4;
-  if ((tests.seen | tests.unseen) != kAllFaces)
-    for (unsigned f = 0; f < 4; ++f) {
-      if ((tests.seen | tests.unseen) >> f & 1) continue;
-      const auto [x, y, z] = c_.face_nodes(4 * t + f);
-      if (orient3d(c_.point(x), c_.point(y), c_.point(z), c_.point(v)) > 0) tests.seen |= 1u << f;
-    }
+  const unsigned unknown = (with_sides ? kAllFaces : ghosts) & ~(tests.seen | tests.unseen);
+  for (unsigned f = 0; unknown >> f; ++f) {
+    if (!(unknown >> f & 1)) continue;
+    const auto [x, y, z] = c_.face_nodes(4 * t + f);
+    if (orient3d(c_.point(x), c_.point(y), c_.point(z), c_.point(v)) > 0) tests.seen |= 1u << f;
+  }
   // A ghost is in conflict with points beyond its face, and in its plane since t, behind it, is in conflict.
   unsigned inside = (tests.inside & ~ghosts) | (ghosts & ~tests.seen);
-  const unsigned open = kAllFaces & ~(tests.inside | tests.outside | ghosts);
-  if (open)
-    for (unsigned f = 0; f < 4; ++f) {
-      const TetIndex next = c_.neigh[4 * t + f] >> 2;
-      if (!(open >> f & 1) || (c_.flag[next] & TetComplex::marked)) continue;
-      if (territory_.holds(c_.node[c_.neigh[4 * t + f]]) && in_conflict(ExplicitView{c_}, next, v)) inside |= 1u << f;
-    }
+  const unsigned left = open & ~(tests.inside | tests.outside | ghosts);
+  for (unsigned f = 0; f < 4; ++f)
+    if (left >> f & 1) inside |= static_cast<unsigned>(is_inside_exactly(4 * t + f, v, tests.tie >> f & 1)) << f;
   return {static_cast<std::uint8_t>(inside), static_cast<std::uint8_t>(tests.seen),
-          static_cast<std::uint8_t>(tests.close & ~ghosts)};
+          static_cast<std::uint8_t>(close & ~ghosts)};
 }
 
-/// The usual case of look_across: all vertices real and explicit, all tests that matter decided by their bounds.
+/// Whether the tet across a face is in conflict with v. `is_tie`: v is known to lie on its sphere.
+bool DelaunayKernel::is_inside_exactly(FaceRef face, VertexIndex v, bool is_tie) {
+  ++counts.exact_tests;
+  const std::uint32_t* const n = &c_.node[c_.neigh[face] & ~3u];
+  const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]), d = c_.point(n[3]), e = c_.point(v);
+  const int sign = is_tie ? 0 : detail::insphere_exact(a, b, c, d, e);
+  return (sign != 0 ? sign : detail::insphere_tie(a, b, c, d, e)) > 0;
+}
+
+/// The usual case of look_across: all vertices real and explicit, all tests that matter decided by the first bounds.
 /// @param apex  across the four faces
 /// @return false where it is not the usual case
 template <bool kConstrained>
-bool DelaunayKernel::look_across_fast(TetIndex t, const VertexIndex* apex, VertexIndex v, unsigned open,
+[[gnu::always_inline]] inline bool DelaunayKernel::look_across_fast(TetIndex t, const VertexIndex* apex, VertexIndex v, unsigned open,
                                       double min_distance2, Faces& faces) {
   const std::uint32_t* const n = &c_.node[4 * t];
   if (n[3] == kGhost || std::max(std::max(apex[0], apex[1]), std::max(apex[2], apex[3])) == kGhost) return false;
@@ -256,7 +267,7 @@ DelaunayKernel::Insert DelaunayKernel::grow_cavity(TetIndex start, VertexIndex v
     if (is_confined() && has_foreign(apex, open)) return Insert::not_ours;
     Faces faces;
     if (is_exact || !look_across_fast<kConstrained>(t, apex, v, open, min_distance2, faces))
-      faces = look_across(t, v, min_distance);
+      faces = look_across(t, v, open, kConstrained, min_distance);
     const unsigned grown = open & faces.inside, border = (open & ~grown) | walls;
     cavity_.reserve_more(4);
     border_.reserve_more(4);

@@ -54,6 +54,12 @@ Case some_case(Random& random, int n) {
   return c;
 }
 
+FaceTests run_twofold(const Case& c) {
+  const TetVertex* const v[4] = {&c.tet[0], &c.tet[1], &c.tet[2], &c.tet[3]};
+  const TetVertex* const w[4] = {&c.apex[0], &c.apex[1], &c.apex[2], &c.apex[3]};
+  return test_faces_twofold(v, w, c.at);
+}
+
 FaceTests run(const Case& c) {
   const TetVertex* const v[4] = {&c.tet[0], &c.tet[1], &c.tet[2], &c.tet[3]};
   const TetVertex* const w[4] = {&c.apex[0], &c.apex[1], &c.apex[2], &c.apex[3]};
@@ -92,6 +98,48 @@ TEST(FaceTests, never_wrong_where_they_claim_to_be_sure) {
   EXPECT_GT(sure, 1'000'000);
   EXPECT_GT(open, 200'000);
   EXPECT_GT(open_sides, 200'000);
+}
+
+TEST(FaceTests, in_twofold_precision_are_never_wrong_and_know_ties) {
+  Random random(kSeed + 3);
+  long sure = 0, open = 0, ties = 0, unseen = 0;
+  for (int n = 0; n < 1'000'000; ++n) {
+    const Case c = some_case(random, n);
+    const FaceTests tests = run_twofold(c);
+    ASSERT_EQ((tests.inside & tests.outside) | (tests.tie & (tests.inside | tests.outside)), 0u);
+    ASSERT_EQ(tests.seen & tests.unseen, 0u);
+    ASSERT_LT(tests.inside | tests.outside | tests.tie | tests.seen | tests.unseen, 16u);
+    const Point p = c.at.point();
+    for (unsigned f = 0; f < 4; ++f) {
+      const Point x = c.tet[kFaceNodes[f][0]].point(), y = c.tet[kFaceNodes[f][1]].point(),
+                  z = c.tet[kFaceNodes[f][2]].point(), w = c.apex[f].point();
+      const int power = detail::insphere_exact(x, z, y, w, p), side = detail::orient3d_exact(x, y, z, p);
+      const unsigned bit = 1u << f;
+      if (tests.inside & bit) {
+        ASSERT_EQ(power, 1) << "seed " << kSeed + 3 << " case " << n << " face " << f;
+      }
+      if (tests.outside & bit) {
+        ASSERT_EQ(power, -1) << "seed " << kSeed + 3 << " case " << n << " face " << f;
+      }
+      if (tests.tie & bit) {
+        ASSERT_EQ(power, 0) << "seed " << kSeed + 3 << " case " << n << " face " << f;
+      }
+      if (tests.seen & bit) {
+        ASSERT_EQ(side, 1) << "seed " << kSeed + 3 << " case " << n << " face " << f;
+      }
+      if (tests.unseen & bit) {
+        ASSERT_LE(side, 0) << "seed " << kSeed + 3 << " case " << n << " face " << f;
+      }
+      ((tests.inside | tests.outside | tests.tie) & bit ? sure : open) += 1;
+      ties += (tests.tie & bit) != 0;
+      unseen += (tests.unseen & bit) && side == 0;
+    }
+  }
+  if (!kHasTwofoldTests) GTEST_SKIP() << "the processor this was built for has no fused multiplication: exact at once";
+  EXPECT_GT(sure, 2'500'000);  // the others: ties and near-ties off any lattice, of which these cases are full
+  EXPECT_GT(open, 100'000);
+  EXPECT_GT(ties, 100'000);
+  EXPECT_GT(unseen, 50'000);
 }
 
 TEST(FaceTests, decide_nearly_everything_of_random_tets) {
@@ -147,6 +195,46 @@ TEST(FaceTests, rounding_error_stays_below_the_bound) {
   EXPECT_LT(worst, lanes::kInsphereFaceBound);
   EXPECT_GT(worst, 0.002 * lanes::kInsphereFaceBound);  // the comparison does see rounding errors
 }
+
+#ifdef DELFRONT_HAS_TWOFOLD
+/// The same in twofold precision, with exact differences in one double and in two.
+TEST(FaceTests, twofold_rounding_error_stays_below_the_bound) {
+  using Float = boost::multiprecision::cpp_bin_float_100;
+  using namespace lanes;
+  Random random(kSeed + 4);
+  double worst = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Case c = some_case(random, n % 2 == 0 ? 4 : 2);
+    const TetVertex* const v[4] = {&c.tet[0], &c.tet[1], &c.tet[2], &c.tet[3]};
+    const TetVertex* const w[4] = {&c.apex[0], &c.apex[1], &c.apex[2], &c.apex[3]};
+    Four<Twofold> corner, apex;
+    const bool is_corner_short = exact_relative(v, load(c.at), corner),
+               is_short = exact_relative(w, load(c.at), apex) && is_corner_short;
+    const Extent e = extent_of(extent_of(rounded(corner)), rounded(apex));
+    Twofold power;
+    if (is_short) {
+      power = powers_of(corners_of(narrowed(corner)), narrowed(apex));
+    } else {
+      corner.lift = corner.x * corner.x + corner.y * corner.y + corner.z * corner.z;
+      apex.lift = apex.x * apex.x + apex.y * apex.y + apex.z * apex.z;
+      power = powers_of(corners_of(corner), apex);
+    }
+    const auto relative_to_p = [&](const TetVertex& at) {
+      return reference::Vector<Float>{Float(at.x) - c.at.x, Float(at.y) - c.at.y, Float(at.z) - c.at.z};
+    };
+    const auto q1 = relative_to_p(c.tet[1]), q2 = relative_to_p(c.tet[2]), q3 = relative_to_p(c.tet[3]),
+               w0 = relative_to_p(c.apex[0]);
+    using reference::det3, reference::squared;
+    const Float exact = squared(w0) * det3(q1, q2, q3) - squared(q1) * det3(w0, q2, q3) +
+                        squared(q2) * det3(w0, q1, q3) - squared(q3) * det3(w0, q1, q2);
+    const double size = e.x[0] * e.y[0] * e.z[0] * e.lift[0];
+    const Float error = exact - Float(power.high[0]) - Float(power.low[0]);
+    if (size > 0) worst = std::max(worst, std::fabs(static_cast<double>(error)) / size);
+  }
+  EXPECT_LT(worst, kTwofoldInsphereBound);
+  EXPECT_GT(worst, 1e-4 * kTwofoldInsphereBound);  // the comparison does see rounding errors
+}
+#endif
 
 }  // namespace
 }  // namespace delfront
