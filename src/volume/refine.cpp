@@ -26,7 +26,8 @@ constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;      ///< of the wanted size, between points
 constexpr std::uint64_t kMaxSteps = 1000;  ///< to a proposal's tet, 5 on average: beyond, a walk among slivers wanders
 constexpr std::size_t kPointsPerCancelCheck = 4096;
-constexpr std::size_t kRecent = 16;        ///< points inserted last that are looked at first
+constexpr double kWorthYield = 1e-3;  ///< points a proposal below which gaps are left
+constexpr std::size_t kRecent = 16;   ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
 constexpr std::size_t kGrain = 1 << 12;
 constexpr std::size_t kSlotsPerProposal = 4;  ///< a third of the proposals become points, of 5.7 tets each
@@ -80,23 +81,10 @@ class Refinement {
     for (TetIndex t = 0; t < c_.num_slots(); ++t) fresh_.push_back(t);
     for (auto& key : key_) key.resize(c_.num_vertices());
     for (VertexIndex v = 0; v < c_.num_vertices(); ++v) set_keys(v);
-    for (Placement placement = Placement::over_face;;) {
-      context_.progress("refine", c_.num_live(), 0, "cells");
-      context_.check_cells(c_.num_live());
-      classify_fresh();
-      propose(placement);
-      sort_proposals();
-      const std::size_t inserted = insert();
-      ++report_.rounds;
-      if (inserted > 0 || num_left_ > 0) {
-        if (inserted > 0) placement = Placement::over_face;  // the front goes on from there
-        continue;
-      }
-      if (placement == Placement::centroid) break;
-      // What the front could not reach: circumcentres; where those lie behind the boundary: centroids.
-      placement = placement == Placement::over_face ? Placement::circumcentre : Placement::centroid;
-      for (TetIndex t = 0; t < c_.num_slots(); ++t) enqueue(t);
-    }
+    run_front();
+    // What the front could not reach: circumcentres; where those lie behind the boundary: centroids.
+    fill_gaps(Placement::circumcentre);
+    fill_gaps(Placement::centroid);
     return report_;
   }
 
@@ -124,6 +112,35 @@ class Refinement {
 
   static constexpr std::size_t kCurves = 2;
   std::size_t curve_of_round() const { return report_.rounds % kCurves; }
+
+  void run_front() {
+    while (run_round(Placement::over_face) > 0 || num_left_ > 0) {
+    }
+  }
+
+  /// Gives all large tets a try, until next to none of them gets a point; the front goes on from those that do.
+  void fill_gaps(Placement placement) {
+    for (bool is_worthwhile = true; is_worthwhile;) {
+      for (TetIndex t = 0; t < c_.num_slots(); ++t) enqueue(t);
+      const std::size_t before = report_.candidates;
+      std::size_t inserted = 0;
+      do inserted += run_round(placement);
+      while (num_left_ > 0);
+      is_worthwhile = static_cast<double>(inserted) > kWorthYield * static_cast<double>(report_.candidates - before);
+      run_front();
+    }
+  }
+
+  std::size_t run_round(Placement placement) {
+    context_.progress("refine", c_.num_live(), 0, "cells");
+    context_.check_cells(c_.num_live());
+    classify_fresh();
+    propose(placement);
+    sort_proposals();
+    const std::size_t inserted = insert();
+    ++report_.rounds;
+    return inserted;
+  }
 
   /// By vertex, what its place along each curve says of territories.
   void set_keys(VertexIndex v) {
