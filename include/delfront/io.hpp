@@ -47,9 +47,7 @@ std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, C
 /// @brief Throws IoError now, not after an hour, where `path` cannot be written later. Leaves nothing behind.
 void check_writable(const std::string& path);
 
-/// @brief Findings as a VTP point cloud with their kind, severity and ids; errors' triangles too where `surface` has
-/// them.
-void write_defects(const std::vector<Finding>& findings, const std::string& path, const Mesh* surface,
-                   Context& context);
+/// @brief Findings as a VTP: places as vertices, edges as lines, faces as polygons, with their kind, severity and ids.
+void write_defects(const std::vector<Finding>& findings, const std::string& path, Context& context);
 
 }  // namespace delfront

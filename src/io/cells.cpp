@@ -104,6 +104,16 @@ GroupId TagGroups::operator()(int dimension, std::int64_t tag) {
   return it->second;
 }
 
+GroupId TagGroups::by_marker(int dimension, std::int64_t marker) {
+  if (marker != 0) return (*this)(dimension, marker);
+  GroupId& unmarked = unmarked_[static_cast<std::size_t>(dimension)];
+  if (!unmarked.is_valid()) {
+    unmarked = mesh_.groups.next_id();
+    mesh_.groups.push_back({"", dimension, "", false});
+  }
+  return unmarked;
+}
+
 GroupId NamedPatches::operator()(std::string_view name) {
   const auto [it, is_new] = groups_.try_emplace(std::string(name), mesh_.groups.size());
   if (is_new) mesh_.groups.push_back({it->first, 2, "", false});

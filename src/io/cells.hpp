@@ -54,6 +54,8 @@ class TagGroups {
   void name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind = "");
   /// @brief The group of that tag, made when first asked for: named "patch_<tag>" and so on where no name came.
   GroupId operator()(int dimension, std::int64_t tag);
+  /// @brief The same where 0 says "no marker": those cells share one group without a name.
+  GroupId by_marker(int dimension, std::int64_t marker);
 
  private:
   struct Entry {
@@ -62,6 +64,7 @@ class TagGroups {
   };
   Mesh& mesh_;
   std::array<std::map<std::int64_t, GroupId>, 4> groups_;
+  std::array<GroupId, 4> unmarked_;
   std::array<Entry, 4> last_{};  // the one asked for last: tags come in runs
 };
 

@@ -66,7 +66,8 @@ PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& 
     }
     const std::vector<std::string> names = patch_names(model);
     if (!found)
-      throw UsageError(fmt::format("boundaries.{}: no patch is called '{}'{}; the input has: {}", boundaries[b].name,
+      throw UsageError(fmt::format("{}boundaries.{}: no patch is called '{}'{}; the input has: {}",
+                                   boundaries[b].set_at.empty() ? "" : boundaries[b].set_at + ": ", boundaries[b].name,
                                    pattern, did_you_mean(pattern, names), fmt::join(names, ", ")));
   }
   if (far_field.is_valid()) refuse_second_far_field(boundaries, boundary_of, model, far_field);

@@ -7,6 +7,7 @@
 
 #include "delfront/io.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/option_table.hpp"
 #include "planar/far_field.hpp"
 
 namespace delfront {
@@ -57,21 +58,23 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
       if (curve.kind.empty()) curve.kind = "wall";
   } else if (options.domain.keep == "outside" &&
              std::none_of(domain.curves.begin(), domain.curves.end(), is_far_field)) {
-    throw UsageError(
-        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield circle:50c, "
-        "or "
-        "give the outer curve the kind farfield ([boundaries.NAME])");
+    throw usage_error(options, "domain.keep",
+                      "there is no far field that bounds the outside; add e.g. --farfield circle:50c, or "
+                      "give the outer curve the kind farfield ([boundaries.NAME])");
   }
   return far_field;
 }
 
 void check_planar_outputs(const Options& options) {
-  for (const std::string& path : options.output.files)
+  for (std::size_t i = 0; i < options.output.files.size(); ++i) {
+    const std::string& path = options.output.files[i];
     if (format_of(path, options.output.format, true).name == "openfoam")
-      throw UsageError(
+      throw usage_error(
+          options, fmt::format("output.files[{}]", i),
           fmt::format("{}: an OpenFOAM case holds grids of volume cells, and the input lies in the plane; "
                       "write su2, vtu, msh or mesh, or extrude the grid by one cell",
                       path));
+  }
 }
 
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context) {

@@ -10,12 +10,12 @@
 #include "planar/refine.hpp"
 #include "planar/split.hpp"
 #include "planar/to_mesh.hpp"
+#include "sizing/asked_sizes.hpp"
 
 namespace delfront {
 
 namespace {
 
-constexpr double kDefaultGrowth = 1.2;
 constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates want
 
 void check_domain(const PlanarDomain& domain) {
@@ -111,25 +111,6 @@ class LesserField : public SizeField {
   const SizeField* two_;
 };
 
-/// Sizes from the boundary (S1). Without a growth the largest boundary size is the largest of all.
-std::unique_ptr<SizeField> build_size_field(const PlanarGrid& grid, const SizeOptions& options, double largest,
-                                            Context& context) {
-  BoundarySizes boundary = measure_boundary(grid);
-  boundary.growth = options.growth.value_or(kDefaultGrowth);
-  if (options.hmin) boundary.hmin = options.hmin->value;
-  if (options.hmax)
-    boundary.hmax = options.hmax->value;
-  else if (!options.growth)
-    boundary.hmax = std::max(largest, boundary.hmin);
-  return build_boundary_size_field(boundary, context);
-}
-
-double largest_of(const BoundarySizes& sizes) {
-  double largest = 0;
-  for (const double h : sizes.size) largest = std::max(largest, h);
-  return largest;
-}
-
 /// The field's size at every vertex, so that all sizes keep the growth.
 void set_vertex_sizes(TriComplex& complex, const SizeField& field) {
   std::vector<Point> places;
@@ -163,12 +144,13 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
   Outcome outcome;
   Report& report = outcome.report;
   PlanarGrid grid = triangulate(domain, options.domain, context);
-  const double largest = largest_of(measure_boundary(grid));
-  auto by_boundary = build_size_field(grid, options.size, largest, context);
+  BoundarySizes sizes = measure_boundary(grid);
+  const double largest = largest_size(sizes);
+  auto by_boundary = build_asked_size_field(std::move(sizes), options.size, largest, context);
   const LesserField both(by_boundary, size);
   if (options.planar.boundary == "split") {
     split_segments(grid, both, context);
-    by_boundary = build_size_field(grid, options.size, largest, context);
+    by_boundary = build_asked_size_field(measure_boundary(grid), options.size, largest, context);
   }
   const SizeField& field = size ? static_cast<const SizeField&>(both) : *by_boundary;
   set_vertex_sizes(grid.complex, field);

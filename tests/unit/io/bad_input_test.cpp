@@ -101,6 +101,19 @@ TEST(BadInput, off_and_ply_indices_and_truncation) {
   expect_mentions(message_of_reading<InputError>(write_text("a.ply", head + "3 0 1")), {"truncated"});
 }
 
+TEST(BadInput, poly_points_are_numbered_one_after_the_other_from_0_or_1) {
+  for (const char* dimension : {"2", "3"}) {
+    const auto refused = [&](const char* a, const char* b) {
+      const std::string text =
+          std::string("2 ") + dimension + " 0 0\n" + a + " 0 0 0\n" + b + " 1 0 0\n1 0\n1 1 2\n0\n0\n";
+      return message_of_reading<InputError>(write_text("a.poly", text));
+    };
+    expect_mentions(refused("1", "3"), {"line 3", "one after the other"});
+    expect_mentions(refused("2", "3"), {"neither 0 nor 1"});
+    expect_mentions(refused("-9223372036854775807", "9223372036854775807"), {"one after the other"});
+  }
+}
+
 TEST(BadInput, cut_files_of_every_writer_give_an_error_or_less_never_a_crash) {
   Context context;
   const std::filesystem::path folder = scratch_folder("io_cut");
