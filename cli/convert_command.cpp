@@ -17,7 +17,7 @@ class ConvertCommand : public Command {
     app = parent.add_subcommand("convert", "Write a surface or a grid in another format");
     app->allow_extras();
     app->footer(
-        "Names that the new format cannot hold are changed, and the change is printed.\n"
+        "What the new format cannot hold (names, boundary kinds, fields) is changed or left out, and a warning says so.\n"
         "Examples:\n"
         "  delfront convert wing.vtu wing.su2\n"
         "  delfront convert wing.msh case/            (an OpenFOAM case)\n"
@@ -46,9 +46,9 @@ class ConvertCommand : public Command {
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};
     const std::vector<std::string> changes = write_mesh(mesh, out_, context, how, to_);
     terminal.clear_bar();
+    for (const std::string& change : changes) terminal.log(LogLevel::warning, change);
     if (terminal.verbosity() < 0) return 0;
     print_mesh_facts(mesh);
-    for (const std::string& change : changes) fmt::print("name           {}\n", change);
     fmt::print("written        {}\n", out_);
     return 0;
   }

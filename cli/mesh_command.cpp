@@ -197,7 +197,7 @@ class MeshCommand : public Command {
     const RecoveryReport& recovery = result.report.recovery;
     if (recovery.steiner_left)
       fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);
-    for (const std::string& change : result.name_changes) fmt::print("name           {}\n", change);
+    for (const std::string& change : result.name_changes) fmt::print("changed        {}\n", change);
     for (const std::string& warning : surface_warnings(result)) fmt::print("warning        {}\n", warning);
     std::string times;
     for (const StageTime& stage : summed(result.stage_times))

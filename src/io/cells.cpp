@@ -2,8 +2,10 @@
 #include "io/cells.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "delfront/errors.hpp"
 #include "delfront/findings.hpp"
@@ -87,6 +89,22 @@ std::optional<CellType> type_from_vtk(int number) {
 void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std::string>& notes) {
   if (!mesh.fields.empty())
     notes.push_back(fmt::format("{}: {} field(s) are left out; VTU keeps them", format, mesh.fields.size()));
+}
+
+void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::string>& notes,
+                         std::span<const char* const> keeps) {
+  std::size_t num_groups = 0;
+  std::set<std::string> kinds;
+  for (const Group& group : mesh.groups) {
+    if (group.kind.empty() || std::find(keeps.begin(), keeps.end(), group.kind) != keeps.end()) continue;
+    ++num_groups;
+    kinds.insert(group.kind);
+  }
+  if (num_groups > 0)
+    notes.push_back(fmt::format("{}: {} left out ({}); VTU, VTP and Medit .mesh keep them", format,
+                                num_groups == 1 ? "the boundary kind of 1 group is"
+                                                : fmt::format("the boundary kinds of {} groups are", num_groups),
+                                fmt::join(kinds, ", ")));
 }
 
 void TagGroups::name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind) {

@@ -46,6 +46,11 @@ std::optional<CellType> type_from_vtk(int number);
 /// @brief Cell type of the top dimension's blocks and faces, with a sentence where fields are left out.
 void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std::string>& notes);
 
+/// @brief Adds a sentence where boundary kinds are lost: how many, which, and the formats that keep them.
+/// @param keeps  kinds that this format has a place for
+void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::string>& notes,
+                         std::span<const char* const> keeps = {});
+
 /// @brief Hands out groups by a file's integer tag: one group a (dimension, tag), named when the name is known.
 class TagGroups {
  public:
