@@ -30,7 +30,7 @@ const std::vector<FormatInfo>& formats();
 /// @throws UsageError  unknown, or it cannot be read (written): lists those that can, with the nearest name
 const FormatInfo& format_of(const std::string& path, const std::string& format = "", bool to_write = false);
 
-/// @brief Read a file; the type comes from the extension unless `format` names one.
+/// @brief Read a file; the type comes from the extension unless `format` names one. A folder is an OpenFOAM case.
 ///
 /// STL and other facet files come as triangles (polygons kept) with one group of dimension 2 a solid or named group;
 /// points as they stand in the file, not welded (STL: three a facet).

@@ -61,8 +61,11 @@ void check_key(const Options& options, const std::string& key, const Check& chec
 
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;
-  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;  // a device, such as /dev/null
-  const fs::path whole_a = fs::weakly_canonical(a, ignored), whole_b = fs::weakly_canonical(b, ignored);
+  const bool is_device = fs::exists(a, ignored) && !fs::is_regular_file(a, ignored) && !fs::is_directory(a, ignored);
+  if (is_device) return false;  // such as /dev/null
+  fs::path whole_a = fs::weakly_canonical(a, ignored), whole_b = fs::weakly_canonical(b, ignored);
+  for (fs::path* whole : {&whole_a, &whole_b})
+    if (!whole->has_filename()) *whole = whole->parent_path();  // a case folder's name ends in '/' only if it is new
   return !whole_a.empty() && whole_a == whole_b;
 }
 
@@ -156,9 +159,10 @@ void resolve_lengths(Options& options, const LengthScale& scale) {
     check_key(options, "domain.enclose.size", [&] { enclose.size = {resolve_length(enclose.size, scale), ""}; });
   if (options.size.hmin && options.size.hmax && options.size.hmin->value > options.size.hmax->value) {
     const std::string other = place_of_key(options, "size.hmax");
-    throw usage_error(options, "size.hmin",
-                      fmt::format("{:g} is above size.hmax, {:g}{}", options.size.hmin->value, options.size.hmax->value,
-                                  other.empty() ? "" : ", of " + other.substr(0, other.size() - 2)));
+    throw usage_error(
+        options, "size.hmin",
+        fmt::format("{:g} is above size.hmax, which is {:g}{}", options.size.hmin->value, options.size.hmax->value,
+                    other.empty() ? "" : fmt::format(" ({})", other.substr(0, other.size() - 2))));
   }
 }
 

@@ -171,7 +171,9 @@ std::string place_of_key(const Options& options, const std::string& key) {
 }
 
 UsageError usage_error(const Options& options, const std::string& key, const std::string& message) {
-  return UsageError(fmt::format("{}{}: {}", place_of_key(options, key), key, message));
+  const std::string place = place_of_key(options, key);
+  if (place.starts_with('-')) return UsageError(place + message);  // a flag says more than its key to who typed it
+  return UsageError(fmt::format("{}{}: {}", place, key, message));
 }
 
 void set_option(Options& options, const std::string& key, const std::string& value) {

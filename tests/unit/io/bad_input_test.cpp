@@ -36,7 +36,8 @@ TEST(BadInput, unknown_extension_lists_the_known_and_the_nearest) {
   EXPECT_THROW(write_mesh(cube_surface(), "a.poly", context), UsageError);
   EXPECT_EQ(format_of("X.STL").name, "stl");
   EXPECT_EQ(format_of("case/", "", true).name, "openfoam");
-  EXPECT_THROW(format_of("case/"), UsageError);
+  EXPECT_EQ(format_of("case/").name, "openfoam");
+  EXPECT_EQ(format_of(scratch_folder("a.stl")).name, "openfoam") << "a folder, whatever it is called";
 }
 
 TEST(BadInput, stl_header_with_four_billion_facets) {
