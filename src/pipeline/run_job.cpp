@@ -237,6 +237,9 @@ void work_and_catch(Run& run) {
   JobResult& result = run.result;
   try {
     work(run);
+  } catch (const MeshingError& e) {
+    put_error(result, e.exit_code, e.what(), e.places);
+    if (e.partial) run.partial = *e.partial;
   } catch (const Error& e) {
     put_error(result, e.exit_code, e.what(), e.places);
   } catch (const std::bad_alloc&) {
