@@ -17,7 +17,8 @@ class ConvertCommand : public Command {
     app = parent.add_subcommand("convert", "Write a surface or a grid in another format");
     app->allow_extras();
     app->footer(
-        "What the new format cannot hold (names, boundary kinds, fields) is changed or left out, and a warning says so.\n"
+        "What the new format cannot hold (names, boundary kinds, fields) is changed or left out, and a warning says "
+        "so.\n"
         "Examples:\n"
         "  delfront convert wing.vtu wing.su2\n"
         "  delfront convert wing.msh case/            (an OpenFOAM case)\n"

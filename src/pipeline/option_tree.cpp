@@ -101,7 +101,8 @@ void apply_boundary_entry(Options& options, const std::string& name, const std::
     names.push_back(row.name);
     if (row.name != entry) continue;
     set_checked(key, row.allowed, where(value.line), [&] { row.set(boundary_of(options, name), value); });
-    boundary_of(options, name).set_at = place_of(where(value.line));
+    BoundaryOptions& boundary = boundary_of(options, name);
+    if (entry == "select" || boundary.set_at.empty()) boundary.set_at = place_of(where(value.line));
     return;
   }
   throw UsageError(fmt::format("{}unknown key '{}'{}; allowed in [boundaries.{}]: {}", where(value.line), key,
