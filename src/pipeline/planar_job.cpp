@@ -41,13 +41,11 @@ bool is_planar_job(const std::vector<NamedMesh>& inputs) {
 }
 
 CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& scale, Context& context) {
-  std::vector<BoundaryOptions> boundaries = options.boundaries;
   const bool has_far_field = options.domain.enclose.shape != "none";
+  const bool looks_only = has_far_field && options.stop_after == "geometry";
+  const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
   CurveId far_field;
-  if (has_far_field && options.stop_after == "geometry") {
-    const std::string& name = options.domain.enclose.name;
-    std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
-  } else if (has_far_field) {
+  if (has_far_field && !looks_only) {
     far_field = add_far_field(domain, options.domain.enclose, options.size, scale, context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }

@@ -74,22 +74,22 @@ void read_inputs(Run& run) {
   run.context.progress("read", files.size(), files.size(), "files");
 }
 
-/// No side above hmax, on the far field neither.
-void bound_far_field_side(Options& options) {
+/// What percent, longest sides and units mean is known once the input's box is.
+void set_scale(Run& run, const Box& box) {
+  Options& options = run.options;
+  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(options.input.units)};
+  resolve_lengths(options, run.result.scale);
   EncloseOptions& enclose = options.domain.enclose;
-  if (has_far_field(options) && !enclose.h && options.size.hmax)
+  if (has_far_field(options) && !enclose.h && options.size.hmax)  // no side above hmax, on the far field neither
     enclose.h = Length{std::min(default_far_field_side(enclose), options.size.hmax->value), ""};
 }
 
 /// The far field and the patches' names and kinds. What the input holds is a wall in the flow unless said otherwise.
 void set_boundaries(Run& run, Model& model) {
   Options& options = run.options;
-  std::vector<BoundaryOptions> boundaries = options.boundaries;
-  if (has_far_field(options) && options.stop_after == "geometry") {
-    // Only the input is looked at: what is said of the far field has nothing to stand for.
-    const std::string& name = options.domain.enclose.name;
-    std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
-  } else if (has_far_field(options)) {
+  const bool looks_only = has_far_field(options) && options.stop_after == "geometry";
+  const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
+  if (has_far_field(options) && !looks_only) {
     run.far_field = add_far_field(model, options.domain.enclose, run.result.scale, run.context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }
@@ -109,10 +109,7 @@ void set_boundaries(Run& run, Model& model) {
 Model make_model(Run& run) {
   Model model = build_model(run.inputs, run.context);
   model.feature_angle = run.options.input.feature_angle;
-  const Box box = model.bounding_box();
-  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
-  resolve_lengths(run.options, run.result.scale);
-  bound_far_field_side(run.options);
+  set_scale(run, model.bounding_box());
   set_boundaries(run, model);
   return model;
 }
@@ -178,9 +175,9 @@ void finish(Run& run, Outcome outcome) {
   if (writes_grid(run.options)) write_outputs(run);
   if (run.result.failed_gates.empty()) return;
   run.result.exit_code = ExitCode::gate_not_met;
-  run.result.error = "the grid was written, but does not meet: " + run.result.failed_gates[0];
-  for (std::size_t i = 1; i < run.result.failed_gates.size(); ++i)
-    run.result.error += "; " + run.result.failed_gates[i];
+  run.result.error = fmt::format("the grid {}: {}",
+                                 run.result.files_written.empty() ? "does not meet" : "was written, but does not meet",
+                                 fmt::join(run.result.failed_gates, "; "));
 }
 
 /// Lines in the plane: the same steps, over curves instead of patches.
@@ -189,9 +186,7 @@ void work_in_the_plane(Run& run) {
   PlanarDomain domain = build_planar_domain(run.inputs, run.context);
   Box box;
   for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
-  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
-  resolve_lengths(run.options, run.result.scale);
-  bound_far_field_side(run.options);
+  set_scale(run, box);
   const CurveId far_field = set_curves(domain, run.options, run.result.scale, run.context);
   if (run.options.stop_after == "geometry" || run.options.stop_after == "surface" ||
       run.options.volume.method == "none") {

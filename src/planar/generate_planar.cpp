@@ -55,6 +55,18 @@ PlanarGrid triangulate(const PlanarDomain& domain, const DomainOptions& options,
   return grid;
 }
 
+double nearest_neighbour(const TriComplex& c, VertexIndex v) {
+  double nearest = 1e300;
+  const EdgeRef first = c.first_edge(v);
+  EdgeRef ref = first;
+  do {
+    if (const VertexIndex w = c.target(ref); w != kInfinity)
+      nearest = std::min(nearest, std::sqrt(squared_length(c.point[w] - c.point[v])));
+    ref = c.turn_left(ref);
+  } while (ref != first);
+  return nearest;
+}
+
 /// At each point of the boundary the mean length of its segments there; at points that stand free the nearest one's
 /// distance where that is less than what the field would have.
 BoundarySizes measure_boundary(const PlanarGrid& grid) {
@@ -73,17 +85,9 @@ BoundarySizes measure_boundary(const PlanarGrid& grid) {
   BoundarySizes sizes;
   for (VertexIndex v = 0; v < c.point.size(); ++v) {
     if (c.vertex_tri[v] == kNoTri) continue;
-    double h = count[v] > 0 ? sum[v] / count[v] : 1e300;
-    if (count[v] == 0) {
-      if (c.tri[c.vertex_tri[v]].region == kOutside) continue;
-      const EdgeRef first = c.first_edge(v);
-      EdgeRef ref = first;
-      do {
-        if (const VertexIndex w = c.target(ref); w != kInfinity)
-          h = std::min(h, std::sqrt(squared_length(c.point[w] - c.point[v])));
-        ref = c.turn_left(ref);
-      } while (ref != first);
-    }
+    const bool is_free = count[v] == 0;
+    if (is_free && c.tri[c.vertex_tri[v]].region == kOutside) continue;
+    const double h = is_free ? nearest_neighbour(c, v) : sum[v] / count[v];
     sizes.points.push_back({c.point[v].x, c.point[v].y, 0});
     sizes.size.push_back(h);
   }

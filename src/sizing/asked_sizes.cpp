@@ -5,8 +5,6 @@
 
 namespace delfront {
 
-constexpr double kDefaultGrowth = 1.2;
-
 double largest_size(const BoundarySizes& boundary) {
   double largest = 0;
   for (const double h : boundary.size) largest = std::max(largest, h);

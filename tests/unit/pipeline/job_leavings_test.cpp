@@ -61,8 +61,8 @@ TEST_F(JobLeavings, a_partial_grid_never_destroys_an_input) {
 }
 
 TEST_F(JobLeavings, gate_failures_are_shown_in_the_units_of_the_grid) {
-  run_.options.input.units = "m";
-  run_.options.output.units = "mm";
+  run_.options.input.units = std::string("m");
+  run_.options.output.units = std::string("mm");
   Finding failure{"gate_min_dihedral", Severity::error, 1, "", "", {{{1, 2, 3}, {0}}}};
   failure.outlines = {{0, {{1, 0, 0}, {0, 1, 0}}}};
   run_.gate_failures = {failure};
