@@ -23,7 +23,7 @@ class ConvertCommand : public Command {
         "  delfront convert wing.vtu wing.su2\n"
         "  delfront convert wing.msh case/            (an OpenFOAM case)\n"
         "  delfront convert wing.vtu wing.msh --msh-version 2.2 --ascii");
-    app->add_option("IN", in_, "file to read")->required();
+    app->add_option("IN", in_, "file to read, or folder of an OpenFOAM case")->required();
     app->add_option("OUT", out_, "file to write; a name ending in / is an OpenFOAM case")->required();
     app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
     app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");

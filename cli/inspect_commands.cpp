@@ -119,7 +119,7 @@ class CheckCommand : public Command {
         "Examples:\n"
         "  delfront check body.stl --defects defects.vtp\n"
         "  delfront check body.vtu --require \"min_dihedral > 8, max_nonortho < 70\" --json body.json");
-    app->add_option("FILE", file_, "surface or grid")->required();
+    app->add_option("FILE", file_, "surface, grid, or folder of an OpenFOAM case")->required();
     app->add_option("--require", require_, "gates for a grid: \"min_dihedral > 8, max_nonortho < 70\"")
         ->type_name("GATES");
     app->add_option("--defects", defects_, "write all places to this file (.vtp)")->type_name("FILE");
@@ -194,7 +194,7 @@ class InfoCommand : public Command {
     app->footer(
         "Exit code: 0, or 3 where it cannot be gridded as it is (then: delfront check FILE).\n"
         "Example:\n  delfront info body.stl --json body.json");
-    app->add_option("FILE", file_, "surface or grid")->required();
+    app->add_option("FILE", file_, "surface, grid, or folder of an OpenFOAM case")->required();
     app->add_option("--json", json_, "write the facts as JSON; - for stdout")->type_name("FILE");
     app->add_option("--format", format_, "file type, instead of by extension")->type_name("FORMAT");
     add_common_flags();

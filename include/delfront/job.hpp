@@ -64,9 +64,9 @@ struct JobResult {
 /// Nothing is thrown: how the run ended stands in the result, and, where `options.output.report` names a file, in that
 /// file too, also when the run failed. Outputs are tried for writing before any work. When the surface is refused,
 /// gridding fails or a gate is not met, a defects file is written to `options.output.defects`, or beside the first
-/// output; where there is nothing to show, one of an earlier run under that name is removed. Where gridding fails, the
-/// grid as far as it came is written beside the first output as NAME_partial.vtu.
-/// Limits of `options.limits` are put into `context`.
+/// output. Where gridding fails, the grid as far as it came is written beside the first output as NAME_partial.vtu.
+/// Either one of an earlier run, under that name, is removed where this run has none. Limits of `options.limits` are
+/// put into `context`.
 /// @param command  what the user typed, for the report
 /// @post  each of files_written is complete; no other output exists that was not there before
 JobResult run_job(const Options& options, Context& context, const std::string& command = "");

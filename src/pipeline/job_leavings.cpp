@@ -70,39 +70,49 @@ std::vector<Finding> all_findings(Run& run) {
   return findings;
 }
 
-/// Whether a file is one of ours: nothing else has cells with a kind_id.
-bool is_defects_file(const std::string& path) {
+/// Marks near the beginning of what we leave, which nothing else has.
+constexpr const char* kDefectsMark = "\"kind_id\"";
+constexpr const char* kPartialMark = "\"region:unfinished\"";
+
+bool has_mark(const std::string& path, const char* mark) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return false;
   std::string head(1 << 14, '\0');
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find("type=\"PolyData\"") != std::string::npos && head.find("\"kind_id\"") != std::string::npos;
+  return head.find("<VTKFile") != std::string::npos && head.find(mark) != std::string::npos;
 }
 
-void remove_stale_defects(const std::string& path, Run& run) {
+/// An earlier run's file under a name that this run would have used must not pass for this run's.
+void remove_stale(const std::string& path, const char* mark, Run& run) {
   if (find_same_file(path, run.options.input.files) || find_same_file(path, run.options.output.files) ||
-      !is_defects_file(path))
+      !has_mark(path, mark))
     return;
   std::error_code error;
   fs::remove(path, error);
   if (error) run.result.warnings.push_back(fmt::format("{} is of an earlier run; it could not be removed", path));
 }
 
+/// Whether the run came to a verdict; where it was stopped halfway, what an earlier one left is still right.
+bool has_verdict(ExitCode code) {
+  return code == ExitCode::done || code == ExitCode::gate_not_met || code == ExitCode::bad_input ||
+         code == ExitCode::meshing_failed;
+}
+
 }  // namespace
 
 void leave_defects(Run& run) {
   JobResult& result = run.result;
-  const bool is_about_input = result.exit_code == ExitCode::done || result.exit_code == ExitCode::gate_not_met ||
-                              result.exit_code == ExitCode::bad_input || result.exit_code == ExitCode::meshing_failed;
   const bool is_asked_for = !run.options.output.defects.empty();
   if (result.exit_code == ExitCode::usage || result.exit_code == ExitCode::cannot_write) return;
-  if (!is_about_input && !is_asked_for) return;  // stopped halfway: what an earlier run left is still right
+  if (!has_verdict(result.exit_code) && !is_asked_for) return;
   const std::string path = is_asked_for ? run.options.output.defects : beside_output(run.options, "_defects.vtp");
   const std::vector<Finding> findings = all_findings(run);
-  const bool has_places =
-      std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return !f.places.empty(); });
-  if (!has_places || (!is_asked_for && !has_errors(findings))) return remove_stale_defects(path, run);
+  const auto has_places = [](const Finding& f) { return !f.places.empty(); };
+  const bool is_shown = is_asked_for
+                            ? !findings.empty()
+                            : has_errors(findings) && std::any_of(findings.begin(), findings.end(), has_places);
+  if (!is_shown) return remove_stale(path, kDefectsMark, run);
   try {
     if (find_same_file(path, run.options.input.files))
       throw UsageError(path + " is an input; --defects FILE names another place");
@@ -116,8 +126,10 @@ void leave_defects(Run& run) {
 
 void leave_partial_grid(Run& run) {
   JobResult& result = run.result;
-  if (result.exit_code != ExitCode::meshing_failed || run.partial.top_dimension() < 2) return;
+  if (!has_verdict(result.exit_code)) return;
   const std::string path = beside_output(run.options, "_partial.vtu");
+  if (result.exit_code != ExitCode::meshing_failed || run.partial.top_dimension() < 2)
+    return remove_stale(path, kPartialMark, run);
   try {
     if (find_same_file(path, run.options.input.files) || find_same_file(path, run.options.output.files))
       throw UsageError(path + " is an input, or the name of a grid");

@@ -5,10 +5,10 @@
 namespace delfront {
 
 // What a run leaves beside its grid. Best effort: nothing here may hide how the run ended, so nothing is thrown; what
-// could not be written becomes a warning of the result.
+// could not be written becomes a warning of the result. A file of ours that an earlier run left under the name is
+// removed where this run has none to put there.
 
 /// @brief Everything that is wrong, with places, for the viewer: in options.output.defects, or beside the first output.
-/// A file of an earlier run that stands there is removed where this run has no defects to show.
 void leave_defects(Run& run);
 
 /// @brief The grid as far as it came, NAME_partial.vtu beside the first output, where gridding failed.

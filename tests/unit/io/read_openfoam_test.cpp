@@ -98,6 +98,8 @@ TEST(ReadOpenFoam, other_cells_become_polyhedra) {
   const Mesh got = read_back(mesh);
   EXPECT_EQ(got.num_cells_of_dimension(3), points.size()) << "seed " << kSeed;
   EXPECT_GT(got.num_cells(CellType::polyhedron), points.size() / 2);
+  EXPECT_FALSE(has_errors(check(got)));
+  EXPECT_EQ(measure_quality(got, context).num_cells, points.size());
 }
 
 TEST(ReadOpenFoam, the_folder_of_the_mesh_does_too) {

@@ -60,6 +60,21 @@ TEST_F(JobLeavings, a_partial_grid_never_destroys_an_input) {
   EXPECT_EQ(fs::file_size(path("grid_partial.vtu")), 8u);
 }
 
+TEST_F(JobLeavings, a_partial_grid_of_an_earlier_run_goes) {
+  Mesh unfinished = fixtures::cube_surface();
+  unfinished.add_group(3, "unfinished");
+  write_mesh(unfinished, path("grid_partial.vtu"), context_);
+  result_.exit_code = ExitCode::limit_reached;
+  leave_partial_grid(run_);
+  EXPECT_TRUE(fs::exists(path("grid_partial.vtu")));
+  result_.exit_code = ExitCode::done;
+  leave_partial_grid(run_);
+  EXPECT_FALSE(fs::exists(path("grid_partial.vtu")));
+  write_mesh(fixtures::cube_surface(), path("grid_partial.vtu"), context_);
+  leave_partial_grid(run_);
+  EXPECT_TRUE(fs::exists(path("grid_partial.vtu"))) << "not ours";
+}
+
 TEST_F(JobLeavings, gate_failures_are_shown_in_the_units_of_the_grid) {
   run_.options.input.units = std::string("m");
   run_.options.output.units = std::string("mm");
