@@ -17,12 +17,13 @@ class ConvertCommand : public Command {
     app = parent.add_subcommand("convert", "Write a surface or a grid in another format");
     app->allow_extras();
     app->footer(
-        "Names that the new format cannot hold are changed, and the change is printed.\n"
+        "What the new format cannot hold (names, boundary kinds, fields) is changed or left out, and a warning says "
+        "so.\n"
         "Examples:\n"
         "  delfront convert wing.vtu wing.su2\n"
         "  delfront convert wing.msh case/            (an OpenFOAM case)\n"
         "  delfront convert wing.vtu wing.msh --msh-version 2.2 --ascii");
-    app->add_option("IN", in_, "file to read")->required();
+    app->add_option("IN", in_, "file to read, or folder of an OpenFOAM case")->required();
     app->add_option("OUT", out_, "file to write; a name ending in / is an OpenFOAM case")->required();
     app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
     app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");
@@ -46,9 +47,9 @@ class ConvertCommand : public Command {
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};
     const std::vector<std::string> changes = write_mesh(mesh, out_, context, how, to_);
     terminal.clear_bar();
+    for (const std::string& change : changes) terminal.log(LogLevel::warning, change);
     if (terminal.verbosity() < 0) return 0;
     print_mesh_facts(mesh);
-    for (const std::string& change : changes) fmt::print("name           {}\n", change);
     fmt::print("written        {}\n", out_);
     return 0;
   }

@@ -64,7 +64,7 @@ Inspected inspect(const std::string& path, const std::string& format, Context& c
   const Model model = build_model({{result.mesh, std::filesystem::path(path).stem().string()}}, context);
   result.surface = check_surface(model, context);
   result.findings = result.surface.findings;
-  result.mesh = surface_mesh(model);  // ids of places are those of the welded, triangulated surface
+  result.mesh = surface_mesh(model);  // the facts are those of the welded, triangulated surface
   return result;
 }
 
@@ -119,7 +119,7 @@ class CheckCommand : public Command {
         "Examples:\n"
         "  delfront check body.stl --defects defects.vtp\n"
         "  delfront check body.vtu --require \"min_dihedral > 8, max_nonortho < 70\" --json body.json");
-    app->add_option("FILE", file_, "surface or grid")->required();
+    app->add_option("FILE", file_, "surface, grid, or folder of an OpenFOAM case")->required();
     app->add_option("--require", require_, "gates for a grid: \"min_dihedral > 8, max_nonortho < 70\"")
         ->type_name("GATES");
     app->add_option("--defects", defects_, "write all places to this file (.vtp)")->type_name("FILE");
@@ -142,7 +142,7 @@ class CheckCommand : public Command {
     if (!it.is_grid && !require_.empty())
       terminal.log(LogLevel::warning, "--require is for grids; " + file_ + " is a surface");
     if (terminal.verbosity() >= 0 && json_ != "-") print(it);
-    if (!defects_.empty()) write_defects(it.findings, defects_, &it.mesh, context);
+    if (!defects_.empty()) write_defects(with_gate_failures(it, failed.empty(), context), defects_, context);
     if (!json_.empty()) {
       Json json = facts_json(file_, it);
       json["failed_gates"] = failed;
@@ -157,6 +157,13 @@ class CheckCommand : public Command {
   }
 
  private:
+  std::vector<Finding> with_gate_failures(const Inspected& it, bool are_met, Context& context) const {
+    std::vector<Finding> findings = it.findings;
+    if (are_met) return findings;
+    for (Finding& failure : find_gate_failures(it.mesh, require_, context)) findings.push_back(std::move(failure));
+    return findings;
+  }
+
   std::string verdict(const Inspected& it) const {
     const char* what = it.is_grid       ? "is not a valid grid"
                        : it.is_of_lines ? "cannot be gridded as it is"
@@ -187,7 +194,7 @@ class InfoCommand : public Command {
     app->footer(
         "Exit code: 0, or 3 where it cannot be gridded as it is (then: delfront check FILE).\n"
         "Example:\n  delfront info body.stl --json body.json");
-    app->add_option("FILE", file_, "surface or grid")->required();
+    app->add_option("FILE", file_, "surface, grid, or folder of an OpenFOAM case")->required();
     app->add_option("--json", json_, "write the facts as JSON; - for stdout")->type_name("FILE");
     app->add_option("--format", format_, "file type, instead of by extension")->type_name("FORMAT");
     add_common_flags();

@@ -24,7 +24,10 @@ const char* const kExamples =
     "  delfront mesh case.toml -o wing.su2 -o wing.vtu --set size.hmax=0.5 --report wing.json\n"
     "  delfront mesh case.toml --print-config              the whole configuration, to start a job file from\n"
     "\n"
-    "LENGTH: 0.5 (model units), 5% (of the bounding box's diagonal), 20c (longest sides), 2mm, 1in, ...";
+    "LENGTH: 0.5 (model units), 5% (of the bounding box's diagonal), 20c (longest sides), 2mm, 1in, ...\n"
+    "Model units are those of the coordinates in FILE, whatever they stand for; the grid keeps them unless\n"
+    "--output-units rescales it. Lengths in m, mm, in, ft need --units, which says what a model unit is.\n"
+    "'delfront info FILE' shows the box of the coordinates and guesses the unit. Angles are in degrees.";
 
 bool is_job_file(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -162,6 +165,8 @@ class MeshCommand : public Command {
           terminal.detail(fmt::format("{}: {}{}", f.kind, f.message, f.remedy.empty() ? "" : "; try: " + f.remedy));
     if (!result.defects_file.empty())
       terminal.detail(fmt::format("every place is in {} (ParaView opens it)", result.defects_file));
+    if (!result.partial_file.empty())
+      terminal.detail(fmt::format("the grid as far as it came is in {}", result.partial_file));
   }
 
   /// Stages that ran more than once, added up.
@@ -192,7 +197,7 @@ class MeshCommand : public Command {
     const RecoveryReport& recovery = result.report.recovery;
     if (recovery.steiner_left)
       fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);
-    for (const std::string& change : result.name_changes) fmt::print("name           {}\n", change);
+    for (const std::string& change : result.name_changes) fmt::print("changed        {}\n", change);
     for (const std::string& warning : surface_warnings(result)) fmt::print("warning        {}\n", warning);
     std::string times;
     for (const StageTime& stage : summed(result.stage_times))

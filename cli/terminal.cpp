@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace delfront::cli {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
+
+constexpr std::size_t kColumns = 100;
 
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
@@ -31,17 +34,81 @@ std::string short_time(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// "12.3k of 45.6k points, 1.20M/s, 3 s left": as much of it as is known.
+/// "1 file", "12.3k points"
+std::string count_of(double value, const std::string& unit) {
+  const bool is_plural = value != 1 || !unit.ends_with('s');
+  return fmt::format("{} {}", short_count(value), is_plural ? unit : unit.substr(0, unit.size() - 1));
+}
+
+/// "12.3k of 45.6k points, 1.20M/s, 3 s left": as much of it as is known. At the start only how much there is to do:
+/// "0 of 1 files" reads like a failure where it is the last line of a stage.
 std::string counts(const Progress& p, double seconds_in_stage) {
   const auto done = static_cast<double>(p.done), total = static_cast<double>(p.total);
-  std::string text = p.total ? fmt::format("{} of {} {}", short_count(done), short_count(total), p.unit)
-                             : fmt::format("{} {}", short_count(done), p.unit);
+  if (p.done == 0 && p.total > 0) return count_of(total, p.unit);
+  std::string text =
+      p.total ? fmt::format("{} of {}", short_count(done), count_of(total, p.unit)) : count_of(done, p.unit);
   if (seconds_in_stage < 0.5 || p.done == 0) return text;
   const double rate = done / seconds_in_stage;
   text += fmt::format(", {}/s", rate < 10 ? fmt::format("{:.1f}", rate) : short_count(rate));
   const bool has_sweeps = p.stage == "improve";  // its count restarts with each, and how many come is not known
   if (p.total > p.done && !has_sweeps) text += fmt::format(", {} left", short_time((total - done) / rate));
   return text;
+}
+
+std::size_t num_columns(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;  // what continues a UTF-8 character takes no column
+  }));
+}
+
+/// Words of `text` on lines of at most kColumns, the later ones with this indent. `column` is where the first begins.
+std::string wrapped(std::string_view text, std::size_t column, const std::string& indent) {
+  std::string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string_view word = text.substr(begin, end - begin);
+    const std::size_t width = num_columns(word);
+    if (begin > 0 && column + 1 + width > kColumns) {
+      result.append("\n").append(indent);
+      column = indent.size();
+    } else if (begin > 0) {
+      result += ' ';
+      ++column;
+    }
+    result += word;
+    column += width;
+    begin = end + 1;
+  }
+  return result;
+}
+
+/// A message as a person reads it: short ones as they are; of long ones what is wrong on the first line, and each part
+/// behind a "; " (where, what to try) on one of its own.
+std::string broken(const std::string& prefix, const std::string& message) {
+  std::string result = prefix;
+  for (std::size_t begin = 0; begin <= message.size();) {
+    const std::size_t end = std::min(message.find('\n', begin), message.size());
+    std::string_view line = std::string_view(message).substr(begin, end - begin);
+    const std::size_t blanks = std::min(line.find_first_not_of(' '), line.size());
+    const std::string indent(blanks + 2, ' ');
+    std::size_t column = begin == 0 ? num_columns(prefix) : blanks;
+    if (begin > 0) result.append("\n").append(blanks, ' ');
+    line.remove_prefix(blanks);
+    if (column + num_columns(line) <= kColumns) {
+      result += line;
+      line = {};
+    }
+    while (!line.empty()) {
+      const std::size_t part = std::min(line.find("; "), line.size());
+      const bool is_last = part == line.size();
+      result += wrapped(line.substr(0, is_last ? part : part + 1), column, std::string(blanks + 4, ' '));
+      line.remove_prefix(is_last ? part : part + 2);
+      column = indent.size();
+      if (!line.empty()) result.append("\n").append(indent);
+    }
+    begin = end + 1;
+  }
+  return result;
 }
 
 void put_json(const Json& json) {
@@ -119,7 +186,7 @@ void Terminal::log(LogLevel level, const std::string& message) {
   const char* name = level == LogLevel::warning ? "warning" : level == LogLevel::info ? "info" : "debug";
   if (style_ == ProgressStyle::json) return put_json({{"event", "log"}, {"level", name}, {"message", message}});
   clear_bar();
-  fmt::print(stderr, "delfront: {}: {}\n", name, message);
+  fmt::print(stderr, "{}\n", broken(fmt::format("delfront: {}: ", name), message));
 }
 
 void Terminal::error(ExitCode code, const std::string& message, const std::vector<Place>& places) {
@@ -132,7 +199,7 @@ void Terminal::error(ExitCode code, const std::string& message, const std::vecto
         {{"event", "error"}, {"exit_code", static_cast<int>(code)}, {"message", message}, {"places", list}});
   }
   clear_bar();
-  fmt::print(stderr, "delfront: error: {}\n", message);
+  fmt::print(stderr, "{}\n", broken("delfront: error: ", message));
   for (std::size_t i = 0; i < std::min(places.size(), kShown); ++i) {
     const Place& place = places[i];
     fmt::print(stderr, "  at ({:g}, {:g}, {:g})", place.at.x, place.at.y, place.at.z);
@@ -145,7 +212,7 @@ void Terminal::error(ExitCode code, const std::string& message, const std::vecto
 void Terminal::detail(const std::string& message) {
   if (verbosity_ < 0) return;
   if (style_ == ProgressStyle::json) return put_json({{"event", "detail"}, {"message", message}});
-  fmt::print(stderr, "  {}\n", message);
+  fmt::print(stderr, "{}\n", broken("  ", message));
 }
 
 ProgressStyle parse_progress_style(const std::string& name) {

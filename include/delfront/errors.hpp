@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -9,6 +10,8 @@
 #include "delfront/point.hpp"
 
 namespace delfront {
+
+struct Mesh;
 
 /// @brief Where something is wrong: a place in space and, where known, the ids of the entities there.
 struct Place {
@@ -49,8 +52,10 @@ struct InputError : Error {
 };
 /// @brief Gridding failed after all recovery steps; carries the places for the viewer.
 struct MeshingError : Error {
-  explicit MeshingError(const std::string& message, std::vector<Place> where = {})
-      : Error(ExitCode::meshing_failed, message, std::move(where)) {}
+  explicit MeshingError(const std::string& message, std::vector<Place> where = {},
+                        std::shared_ptr<const Mesh> so_far = nullptr)
+      : Error(ExitCode::meshing_failed, message, std::move(where)), partial(std::move(so_far)) {}
+  std::shared_ptr<const Mesh> partial;  ///< the grid as far as it came, to look at; null where there is none
 };
 /// @brief A file cannot be written (permission, missing folder, disk full).
 struct IoError : Error {

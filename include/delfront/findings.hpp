@@ -14,16 +14,24 @@ enum class Severity : std::uint8_t {
   error,    ///< cannot be gridded as it is
 };
 
+/// @brief What a viewer draws of a finding: an edge (two corners), or a face.
+struct Outline {
+  std::uint32_t id = 0;  ///< as in the places
+  std::vector<Point> corners;
+};
+
 /// @brief One kind of thing found in a surface or a grid: how many, which, where, what to try.
 struct Finding {
   std::string kind;  ///< stable key, e.g. "open_edges", "self_intersection", "duplicate_triangles", "flat_cell"
   Severity severity = Severity::note;
   std::size_t count = 0;
-  std::string message;        ///< a sentence with the count and the first place
-  std::string remedy;         ///< what to try; may be empty
-  std::vector<Place> places;  ///< the first of them (at most kMaxPlaces), each with ids
+  std::string message;                 ///< a sentence with the count and the first place
+  std::string remedy;                  ///< what to try; may be empty
+  std::vector<Place> places;           ///< the first of them (at most kMaxPlaces), each with ids
+  std::vector<Outline> outlines = {};  ///< of the edges and faces it is about (at most kMaxOutlines)
 };
 inline constexpr std::size_t kMaxPlaces = 1000;
+inline constexpr std::size_t kMaxOutlines = 100000;
 
 inline bool has_errors(const std::vector<Finding>& findings) {
   for (const Finding& f : findings)

@@ -23,7 +23,7 @@ struct Measure {
   bool worst_is_low = true;
   std::vector<std::size_t> histogram;  ///< equal bins over [histogram_low, histogram_high]
   double histogram_low = 0, histogram_high = 0;
-  std::vector<Place> worst;  ///< the worst ten: ids[0] is the cell (or the two cells of a face), `at` its centroid
+  std::vector<Place> worst;  ///< the worst first: ids[0] is the cell (or the two cells of a face), `at` its centroid
   std::vector<double> worst_values;
 };
 
@@ -38,11 +38,21 @@ struct QualityReport {
   const Measure* find(const std::string& name) const;
 };
 
-QualityReport measure_quality(const Mesh& mesh, Context& context);
+/// @param num_worst  how many of the worst each measure lists
+QualityReport measure_quality(const Mesh& mesh, Context& context, std::size_t num_worst = 10);
 
 /// @brief A gate such as "min_dihedral > 8, max_nonortho < 70".
 /// @return the gates that are not met, as sentences
 /// @throws UsageError  an unknown measure (with the nearest right name) or a malformed gate
 std::vector<std::string> failed_gates(const QualityReport& report, const std::string& gates);
+
+/// @brief The cells, faces and edges that keep gates from being met: one finding a gate, kind "gate_<measure>".
+///
+/// Ids and outlines are those of cells (all their faces), of the two cells of a face, or of the two points of an edge;
+/// the worst first, at most kMaxPlaces. A gate on the number of cells has no places, nor has one that the measure's
+/// good side fails ("min_dihedral < 5").
+/// @throws UsageError  as failed_gates
+/// @par Cost  that of measure_quality
+std::vector<Finding> find_gate_failures(const Mesh& mesh, const std::string& gates, Context& context);
 
 }  // namespace delfront

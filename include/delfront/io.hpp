@@ -30,7 +30,7 @@ const std::vector<FormatInfo>& formats();
 /// @throws UsageError  unknown, or it cannot be read (written): lists those that can, with the nearest name
 const FormatInfo& format_of(const std::string& path, const std::string& format = "", bool to_write = false);
 
-/// @brief Read a file; the type comes from the extension unless `format` names one.
+/// @brief Read a file; the type comes from the extension unless `format` names one. A folder is an OpenFOAM case.
 ///
 /// STL and other facet files come as triangles (polygons kept) with one group of dimension 2 a solid or named group;
 /// points as they stand in the file, not welded (STL: three a facet).
@@ -47,9 +47,7 @@ std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, C
 /// @brief Throws IoError now, not after an hour, where `path` cannot be written later. Leaves nothing behind.
 void check_writable(const std::string& path);
 
-/// @brief Findings as a VTP point cloud with their kind, severity and ids; errors' triangles too where `surface` has
-/// them.
-void write_defects(const std::vector<Finding>& findings, const std::string& path, const Mesh* surface,
-                   Context& context);
+/// @brief Findings as a VTP: places as vertices, edges as lines, faces as polygons, with their kind, severity and ids.
+void write_defects(const std::vector<Finding>& findings, const std::string& path, Context& context);
 
 }  // namespace delfront

@@ -53,6 +53,7 @@ struct JobResult {
   std::vector<std::string> name_changes;   ///< names that a format could not hold, as sentences
   std::vector<std::string> warnings;       ///< everything logged at LogLevel::warning, and the report's warnings
   std::string defects_file;                ///< written where something was wrong; else empty
+  std::string partial_file;                ///< the grid as far as it came, where gridding failed; else empty
   std::vector<StageTime> stage_times;
   double seconds = 0;
   std::uint64_t peak_memory = 0;  ///< bytes
@@ -61,9 +62,11 @@ struct JobResult {
 /// @brief A whole job: read, check, enclose, grid, improve, gates, write, report.
 ///
 /// Nothing is thrown: how the run ended stands in the result, and, where `options.output.report` names a file, in that
-/// file too, also when the run failed. Outputs are tried for writing before any work. When the surface is refused or
-/// gridding fails, a defects file is written to `options.output.defects`, or beside the first output.
-/// Limits of `options.limits` are put into `context`.
+/// file too, also when the run failed. Outputs are tried for writing before any work. When the surface is refused,
+/// gridding fails or a gate is not met, a defects file is written to `options.output.defects`, or beside the first
+/// output. Where gridding fails, the grid as far as it came is written beside the first output as NAME_partial.vtu.
+/// Either one of an earlier run, under that name, is removed where this run has none. Limits of `options.limits` are
+/// put into `context`.
 /// @param command  what the user typed, for the report
 /// @post  each of files_written is complete; no other output exists that was not there before
 JobResult run_job(const Options& options, Context& context, const std::string& command = "");

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,9 +51,10 @@ struct DomainOptions {
 };
 
 struct BoundaryOptions {
-  std::string name;    ///< table key: boundaries.<name>
-  std::string select;  ///< name pattern with * and ?; empty: the patch of that name
-  std::string kind;    ///< wall patch inlet outlet farfield symmetry empty wedge cyclic interface
+  std::string name;         ///< table key: boundaries.<name>
+  std::string select;       ///< name pattern with * and ?; empty: the patch of that name
+  std::string kind;         ///< wall patch inlet outlet farfield symmetry empty wedge cyclic interface
+  std::string set_at = {};  ///< as Options::set_at
 };
 
 struct SizeOptions {
@@ -108,6 +110,8 @@ struct Options {
   LimitOptions limits;
   OutputOptions output;
   std::string stop_after;  ///< last stage to run: "" all, geometry, surface, volume, improve, write
+  /// Where a key was set, for messages: "case.toml:12", "--hmax"; entries of lists as "output.files[0]" too.
+  std::map<std::string, std::string> set_at = {};
 };
 
 }  // namespace delfront

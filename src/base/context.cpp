@@ -11,6 +11,15 @@
 
 namespace delfront {
 
+namespace {
+
+std::string text_of_bytes(std::uint64_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  return value < 1e9 ? fmt::format("{:.4g} MB", value / 1e6) : fmt::format("{:.4g} GB", value / 1e9);
+}
+
+}  // namespace
+
 void fail_check(const char* condition, const char* file, int line) {
   const std::string path = file;
   const std::string name = path.substr(path.find_last_of('/') + 1);
@@ -22,17 +31,24 @@ void fail_check(const char* condition, const char* file, int line) {
 void Context::check_limits() const {
   if (cancel && cancel->load(std::memory_order_relaxed)) throw Cancelled();
   if (time_limit > 0 && seconds_since_start() > time_limit)
-    throw LimitError(fmt::format("stopped: the time limit of {:g} s is reached; nothing was written", time_limit));
-  if (memory_limit > 0 && resident_memory() > memory_limit)
-    throw LimitError(fmt::format("stopped: the memory limit of {:.2f} GB is reached; nothing was written",
-                                 static_cast<double>(memory_limit) / 1e9));
+    throw LimitError(
+        fmt::format("stopped: the time limit of {:g} s is reached; ask for larger sizes (--hmax, --growth) or allow "
+                    "more time (--time-limit)",
+                    time_limit));
+  if (memory_limit == 0) return;
+  if (const std::uint64_t held = resident_memory(); held > memory_limit)
+    throw LimitError(
+        fmt::format("stopped: the memory limit of {} is passed, {} are held; ask for larger sizes (--hmax, --growth) "
+                    "or allow more memory (--memory-limit)",
+                    text_of_bytes(memory_limit), text_of_bytes(held)));
 }
 
 void Context::check_cells(std::uint64_t cells) const {
   if (max_cells > 0 && cells > max_cells)
     throw LimitError(fmt::format(
-        "stopped: the grid passes the limit of {} cells; ask for larger sizes (--hmax, --growth) or a higher limit",
-        max_cells));
+        "stopped: the limit of {} cells is passed, the grid has {} so far; ask for larger sizes (--hmax, --growth) or "
+        "allow more cells (--max-cells)",
+        max_cells, cells));
 }
 
 double Context::seconds_since_start() const {

@@ -64,16 +64,6 @@ Box box_from(const EncloseOptions& options, Point centre, double size) {
   return {{c[0], c[1], c[2]}, {c[3], c[4], c[5]}};
 }
 
-/// resolve_length belongs to the job file, above us; what it makes of a length (model units) and the two units that
-/// need the input's box only are understood here.
-double to_model_units(const Length& length, const LengthScale& scale) {
-  if (length.unit.empty()) return length.value;
-  if (length.unit == "%") return length.value / 100 * scale.diagonal;
-  if (length.unit == "c") return length.value * scale.longest_side;
-  throw UsageError(
-      fmt::format("enclose: a length in {} must be turned into model units first (resolve_length)", length.unit));
-}
-
 void require_positive(double value, const char* what) {
   if (!(value > 0) || !std::isfinite(value))
     throw UsageError(fmt::format("enclose: the {} is {:g}; it must be positive and finite", what, value));
@@ -138,6 +128,14 @@ void append_model(Model& model, const Model& more) {
 }
 
 }  // namespace
+
+double to_model_units(const Length& length, const LengthScale& scale) {
+  if (length.unit.empty()) return length.value;
+  if (length.unit == "%") return length.value / 100 * scale.diagonal;
+  if (length.unit == "c") return length.value * scale.longest_side;
+  throw UsageError(
+      fmt::format("enclose: a length in {} must be turned into model units first (resolve_length)", length.unit));
+}
 
 void append_box(Model& model, const Box& box, double h, PatchId patch) {
   const Point side = box.high - box.low;

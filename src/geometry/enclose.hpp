@@ -19,6 +19,11 @@ namespace delfront {
 /// @throws InputError  the model is not strictly inside (the place that is farthest out is given)
 PatchId add_far_field(Model& model, const EncloseOptions& options, const LengthScale& scale, Context& context);
 
+/// @brief A far field's length: resolve_length belongs to the job file, above us; what it makes of one (model units)
+/// and the two units that need the input's box only are understood here.
+/// @throws UsageError  another unit
+double to_model_units(const Length& length, const LengthScale& scale);
+
 /// @return the side of its triangles where options.h is absent, for a size in model units
 double default_far_field_side(const EncloseOptions& options);
 

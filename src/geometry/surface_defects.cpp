@@ -26,6 +26,7 @@ void append_pairs(const Surface& surface, std::vector<Pair>& pairs, const char* 
   for (const Pair& pair : pairs) {
     if (finding.places.size() >= kMaxPlaces) break;
     add_place(finding, pair.where / surface.scale, {face_id(surface, pair.first), face_id(surface, pair.second)});
+    for (const std::uint32_t t : {pair.first, pair.second}) add_triangle_outline(finding, surface, t);
   }
   const Place& first = finding.places[0];
   finding.message = fmt::format("{} {}, the first are facets {} and {} at {}",
@@ -46,6 +47,20 @@ void add_place(Finding& finding, Point at, std::vector<std::uint32_t> ids) {
   if (finding.places.size() < kMaxPlaces) finding.places.push_back({at, std::move(ids)});
 }
 
+void add_edge_outline(Finding& finding, const Surface& surface, std::size_t edge) {
+  if (finding.outlines.size() >= kMaxOutlines) return;
+  const auto [a, b] = surface.edges.ends(edge);
+  const std::uint32_t face = face_id(surface, surface.edges.half_edges(edge)[0] / 3);
+  finding.outlines.push_back({face, {surface.model.points[a], surface.model.points[b]}});
+}
+
+void add_triangle_outline(Finding& finding, const Surface& surface, std::size_t t) {
+  if (finding.outlines.size() >= kMaxOutlines) return;
+  const auto [a, b, c] = surface.corners(t);
+  const Array<VertexId, Point>& points = surface.model.points;
+  finding.outlines.push_back({face_id(surface, t), {points[a], points[b], points[c]}});
+}
+
 void find_bad_triangles(const Surface& surface, std::vector<Finding>& findings) {
   Finding flat{"degenerate_triangles", Severity::error, 0, "", "remove them where the surface was made", {}};
   Finding twins{"duplicate_triangles", Severity::error, 0, "", "keep one facet of each set", {}};
@@ -53,9 +68,11 @@ void find_bad_triangles(const Surface& surface, std::vector<Finding>& findings) 
     if (surface.is_degenerate[t]) {
       ++flat.count;
       add_place(flat, surface.centroid(t), {face_id(surface, t)});
+      add_triangle_outline(flat, surface, t);
     } else if (!surface.is_first(t)) {
       ++twins.count;
       add_place(twins, surface.centroid(t), {face_id(surface, surface.twin[t]), face_id(surface, t)});
+      add_triangle_outline(twins, surface, t);
     }
   }
   if (flat.count > 0) {

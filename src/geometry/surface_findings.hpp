@@ -43,6 +43,9 @@ std::string count_of(std::size_t count, const std::string& one, const std::strin
 
 /// @brief Appends a place while there is room (kMaxPlaces).
 void add_place(Finding& finding, Point at, std::vector<std::uint32_t> ids = {});
+/// @brief Appends the outline of an edge, or of a triangle, while there is room (kMaxOutlines).
+void add_edge_outline(Finding& finding, const Surface& surface, std::size_t edge);
+void add_triangle_outline(Finding& finding, const Surface& surface, std::size_t t);
 inline std::uint32_t face_id(const Surface& surface, std::size_t t) { return surface.model.input_face[TriangleId(t)]; }
 
 }  // namespace delfront

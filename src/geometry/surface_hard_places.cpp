@@ -33,30 +33,40 @@ double smallest_angle(const Surface& surface, std::size_t t) {
 struct Spot {
   double measure;  ///< the smaller the worse
   Point at;
-  std::vector<std::uint32_t> faces;
+  std::vector<std::uint32_t> triangles;
 };
 
 /// The worst first; the message gets the worst one's measure and place.
-void append_spots(std::vector<Spot>& spots, Finding finding, const std::string& what, std::vector<Finding>& findings) {
+void append_spots(const Surface& surface, std::vector<Spot>& spots, Finding finding, const std::string& what,
+                  std::vector<Finding>& findings) {
   if (spots.empty()) return;
   std::stable_sort(spots.begin(), spots.end(), [](const Spot& a, const Spot& b) { return a.measure < b.measure; });
   finding.count = spots.size();
   finding.message = fmt::format("{}; the worst, {:.3g}, at {}", what, spots[0].measure, text_of(spots[0].at));
-  for (Spot& spot : spots) add_place(finding, spot.at, std::move(spot.faces));
+  if (spots.size() > kMaxPlaces) spots.resize(kMaxPlaces);
+  for (const Spot& spot : spots) {
+    std::vector<std::uint32_t> faces;
+    for (const std::uint32_t t : spot.triangles) {
+      faces.push_back(face_id(surface, t));
+      add_triangle_outline(finding, surface, t);
+    }
+    add_place(finding, spot.at, std::move(faces));
+  }
   findings.push_back(std::move(finding));
 }
 
 void find_slivers(const Surface& surface, SurfaceReport& report) {
   std::vector<Spot> spots;
   double smallest = std::numbers::pi / 3;
-  for (std::size_t t = 0; t < surface.num_triangles(); ++t) {
+  for (std::uint32_t t = 0; t < surface.num_triangles(); ++t) {
     const double angle = surface.is_degenerate[t] ? 0 : smallest_angle(surface, t);
     smallest = std::min(smallest, angle);
     if (surface.is_sound(t) && degrees(angle) < kSliverAngleDeg)
-      spots.push_back({degrees(angle), surface.centroid(t), {face_id(surface, t)}});
+      spots.push_back({degrees(angle), surface.centroid(t), {t}});
   }
   report.min_angle_deg = surface.num_triangles() > 0 ? degrees(smallest) : 0;
-  append_spots(spots, {"sliver_triangles", Severity::warning, 0, "", "re-mesh the surface for better cells there", {}},
+  append_spots(surface, spots,
+               {"sliver_triangles", Severity::warning, 0, "", "re-mesh the surface for better cells there", {}},
                fmt::format("{} an angle under {:g} degree", count_of(spots.size(), "triangle has", "triangles have"),
                            kSliverAngleDeg),
                report.findings);
@@ -101,12 +111,12 @@ void find_sharp_edges(const Surface& surface, const SurfaceShells* shells, Surfa
       const auto [a, b] = surface.edges.ends(e);
       spots.push_back({degrees(wedges[i]),
                        0.5 * (surface.model.points[a] + surface.model.points[b]),
-                       {face_id(surface, t), face_id(surface, order[(i + 1) % order.size()] / 3)}});
+                       {t, order[(i + 1) % order.size()] / 3}});
     }
   }
   report.min_dihedral_deg = smallest < 2 * std::numbers::pi ? degrees(smallest) : 0;
   append_spots(
-      spots,
+      surface, spots,
       {"small_dihedral_angles", Severity::warning, 0, "", "cells along such edges cannot be better than these", {}},
       fmt::format("two facets meet at less than {:g} degrees at {}", kSmallDihedralDeg, count_of(spots.size(), "edge")),
       report.findings);
@@ -135,12 +145,10 @@ void find_thin_spots(const Surface& surface, SurfaceReport& report, Context& con
     };
     for (const Point& way : {reach, -1.0 * reach}) {
       const TriangleTree::Hit hit = tree.first_on_ray((a + b + c) / 3, way, 1, is_opposite);
-      if (hit.found())
-        spots.push_back(
-            {hit.distance * kThinGap, surface.centroid(t), {face_id(surface, t), face_id(surface, hit.triangle)}});
+      if (hit.found()) spots.push_back({hit.distance * kThinGap, surface.centroid(t), {t, hit.triangle}});
     }
   }
-  append_spots(spots,
+  append_spots(surface, spots,
                {"thin_spots", Severity::warning, 0, "", "smaller triangles there give better cells in the gap", {}},
                fmt::format("{} an opposite facet nearer than half the own edge (gap over edge given)",
                            count_of(spots.size(), "facet has", "facets have")),

@@ -23,6 +23,7 @@ void find_non_manifold_edges(const Surface& surface, std::vector<Finding>& findi
     std::vector<std::uint32_t> faces;
     for (std::uint32_t h : half_edges) faces.push_back(face_id(surface, h / 3));
     add_place(finding, middle_of(surface, e), std::move(faces));
+    add_edge_outline(finding, surface, e);
   }
   if (finding.count == 0) return;
   finding.message = fmt::format("{} more than two facets, the first at {}",
@@ -76,6 +77,7 @@ void find_flips(const Surface& surface, std::vector<Finding>& findings) {
     if (!is_flip) continue;
     ++flips.count;
     add_place(flips, middle_of(surface, e), {face_id(surface, s), face_id(surface, t)});
+    add_edge_outline(flips, surface, e);
   }
   if (flips.count > 0) {
     flips.message = fmt::format("two neighbouring facets face opposite ways over {}, the first at {}",
@@ -135,6 +137,7 @@ void find_regions(const Surface& surface, const SurfaceShells& shells, std::vect
     if (!shells.is_sheet(t)) continue;
     ++sheets.count;
     add_place(sheets, surface.centroid(t), {face_id(surface, t)});
+    add_triangle_outline(sheets, surface, t);
   }
   if (sheets.count == 0 || regions.empty()) return;
   sheets.message = fmt::format("{} the same region on both sides, the first is facet {} at {}",

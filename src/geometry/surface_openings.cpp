@@ -88,6 +88,7 @@ Finding describe(const Surface& surface, const std::vector<std::uint32_t>& open,
     for (std::uint32_t e : loop.edges)
       if (faces.size() < kMaxPlaces) faces.push_back(face_id(surface, surface.edges.half_edges(e)[0] / 3));
     add_place(finding, loop.centre, std::move(faces));
+    for (std::uint32_t e : loop.edges) add_edge_outline(finding, surface, e);
     total += loop.perimeter;
   }
   constexpr std::size_t kNamed = 3;

@@ -2,8 +2,10 @@
 #include "io/cells.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "delfront/errors.hpp"
 #include "delfront/findings.hpp"
@@ -89,6 +91,22 @@ void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std:
     notes.push_back(fmt::format("{}: {} field(s) are left out; VTU keeps them", format, mesh.fields.size()));
 }
 
+void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::string>& notes,
+                         std::span<const char* const> keeps) {
+  std::size_t num_groups = 0;
+  std::set<std::string> kinds;
+  for (const Group& group : mesh.groups) {
+    if (group.kind.empty() || std::find(keeps.begin(), keeps.end(), group.kind) != keeps.end()) continue;
+    ++num_groups;
+    kinds.insert(group.kind);
+  }
+  if (num_groups > 0)
+    notes.push_back(fmt::format("{}: {} left out ({}); VTU, VTP and Medit .mesh keep them", format,
+                                num_groups == 1 ? "the boundary kind of 1 group is"
+                                                : fmt::format("the boundary kinds of {} groups are", num_groups),
+                                fmt::join(kinds, ", ")));
+}
+
 void TagGroups::name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind) {
   Group& group = mesh_.groups[(*this)(dimension, tag)];
   group.name = name;
@@ -102,6 +120,16 @@ GroupId TagGroups::operator()(int dimension, std::int64_t tag) {
   if (is_new) mesh_.groups.push_back({fmt::format("{}_{}", role_name(mesh_, dimension), tag), dimension, "", false});
   last_[d] = {tag, it->second};
   return it->second;
+}
+
+GroupId TagGroups::by_marker(int dimension, std::int64_t marker) {
+  if (marker != 0) return (*this)(dimension, marker);
+  GroupId& unmarked = unmarked_[static_cast<std::size_t>(dimension)];
+  if (!unmarked.is_valid()) {
+    unmarked = mesh_.groups.next_id();
+    mesh_.groups.push_back({"", dimension, "", false});
+  }
+  return unmarked;
 }
 
 GroupId NamedPatches::operator()(std::string_view name) {

@@ -46,6 +46,11 @@ std::optional<CellType> type_from_vtk(int number);
 /// @brief Cell type of the top dimension's blocks and faces, with a sentence where fields are left out.
 void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std::string>& notes);
 
+/// @brief Adds a sentence where boundary kinds are lost: how many, which, and the formats that keep them.
+/// @param keeps  kinds that this format has a place for
+void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::string>& notes,
+                         std::span<const char* const> keeps = {});
+
 /// @brief Hands out groups by a file's integer tag: one group a (dimension, tag), named when the name is known.
 class TagGroups {
  public:
@@ -54,6 +59,8 @@ class TagGroups {
   void name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind = "");
   /// @brief The group of that tag, made when first asked for: named "patch_<tag>" and so on where no name came.
   GroupId operator()(int dimension, std::int64_t tag);
+  /// @brief The same where 0 says "no marker": those cells share one group without a name.
+  GroupId by_marker(int dimension, std::int64_t marker);
 
  private:
   struct Entry {
@@ -62,6 +69,7 @@ class TagGroups {
   };
   Mesh& mesh_;
   std::array<std::map<std::int64_t, GroupId>, 4> groups_;
+  std::array<GroupId, 4> unmarked_;
   std::array<Entry, 4> last_{};  // the one asked for last: tags come in runs
 };
 

@@ -45,6 +45,18 @@ void write_msh(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<
 void write_medit(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_su2(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 
+/// @brief The files of a polyMesh; the zones may be empty.
+struct FoamFiles {
+  std::string_view points, faces, owner, neighbour, boundary, cell_zones, face_zones;
+};
+
+/// @brief Read these files, ASCII as write_openfoam makes them.
+/// @param path  of their folder, for messages
+Mesh read_foam_files(const FoamFiles& files, const std::string& path, Context& context);
+
+/// @brief Read an OpenFOAM case, or its polyMesh folder.
+Mesh read_openfoam(const std::string& path, Context& context);
+
 /// @brief Write an OpenFOAM case: `folder`/constant/polyMesh, and a minimal system/ where the case has none.
 void write_openfoam(const Mesh& mesh, const std::string& folder, Context& context, std::vector<std::string>& notes);
 

@@ -12,6 +12,7 @@
 #include "io/cells.hpp"
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
+#include "io/poly_points.hpp"
 
 namespace delfront {
 
@@ -37,17 +38,7 @@ class PlanarPolyReader {
     const std::size_t n = cursor_.count("number of points", 6);
     cursor_.integer("dimension");
     cursor_.skip_line();
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::int64_t index = cursor_.integer("index of a point");
-      if (i == 0) first_index_ = index;
-      if (index - first_index_ != static_cast<std::int64_t>(i))
-        cursor_.fail("points are not numbered one after the other");
-      Point p;
-      for (int k = 0; k < 2; ++k) p[k] = cursor_.number("coordinate of a point");
-      cursor_.skip_line();
-      mesh_.points.push_back(p);
-    }
-    if (first_index_ != 0 && first_index_ != 1) cursor_.fail("points are numbered from neither 0 nor 1");
+    first_index_ = read_poly_points(cursor_, n, 2, mesh_);
   }
 
   void read_segments() {
@@ -65,16 +56,8 @@ class PlanarPolyReader {
       std::int64_t marker = 0;
       if (has_markers && !cursor_.at_line_end()) marker = cursor_.integer("marker");
       cursor_.skip_line();
-      add_cell(mesh_, CellType::line, ends, marker != 0 ? groups_(1, marker) : unmarked());
+      add_cell(mesh_, CellType::line, ends, groups_.by_marker(1, marker));
     }
-  }
-
-  GroupId unmarked() {
-    if (!unmarked_.is_valid()) {
-      mesh_.groups.push_back({"", 1, "", false});
-      unmarked_ = GroupId(mesh_.groups.size() - 1);
-    }
-    return unmarked_;
   }
 
   void read_seeds(const std::string& kind) {
@@ -113,7 +96,6 @@ class PlanarPolyReader {
   Context& context_;
   Mesh mesh_;
   TagGroups groups_;
-  GroupId unmarked_;
   std::int64_t first_index_ = 1;
 };
 

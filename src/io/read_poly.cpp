@@ -9,6 +9,7 @@
 #include "io/cells.hpp"
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
+#include "io/poly_points.hpp"
 
 namespace delfront {
 
@@ -37,17 +38,7 @@ class PolyReader {
     if (n == 0) cursor_.fail("0 points: they are in a .node file, which is not read; put them into this file");
     if (cursor_.integer("dimension") != 3) cursor_.fail("only 3-D .poly files are read");
     cursor_.skip_line();
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::int64_t index = cursor_.integer("index of a point");
-      if (i == 0) first_index_ = index;
-      if (index - first_index_ != static_cast<std::int64_t>(i))
-        cursor_.fail("points are not numbered one after the other");
-      Point p;
-      for (int k = 0; k < 3; ++k) p[k] = cursor_.number("coordinate of a point");
-      cursor_.skip_line();
-      mesh_.points.push_back(p);
-    }
-    if (first_index_ != 0 && first_index_ != 1) cursor_.fail("points are numbered from neither 0 nor 1");
+    first_index_ = read_poly_points(cursor_, n, 3, mesh_);
   }
 
   void read_facet(bool has_markers) {
@@ -57,7 +48,7 @@ class PolyReader {
       cursor_.fail("facets with holes are not read; split them into polygons");
     std::int64_t marker = 0;
     if (has_markers && !cursor_.at_line_end()) marker = cursor_.integer("marker");
-    const GroupId group = marker != 0 ? groups_(2, marker) : unmarked();
+    const GroupId group = groups_.by_marker(2, marker);
     std::vector<std::vector<VertexId>> rings;
     for (std::size_t i = 0; i < num_polygons; ++i) {
       std::vector<VertexId> corners = read_corners();
@@ -98,14 +89,6 @@ class PolyReader {
     return false;
   }
 
-  GroupId unmarked() {
-    if (!unmarked_.is_valid()) {
-      mesh_.groups.push_back({"", 2, "", false});
-      unmarked_ = GroupId(mesh_.groups.size() - 1);
-    }
-    return unmarked_;
-  }
-
   void read_seeds() {
     for (const char* what : {"hole", "region"}) {
       if (cursor_.at_end()) return;
@@ -122,7 +105,6 @@ class PolyReader {
   Context& context_;
   Mesh mesh_;
   TagGroups groups_;
-  GroupId unmarked_;
   std::int64_t first_index_ = 1;
 };
 

@@ -44,7 +44,9 @@ const std::vector<Format>& table() {
   return kTable;
 }
 
-bool can_write(const Format& format) { return format.write || std::string_view(format.name) == kFolderFormat; }
+bool is_folder(const Format& format) { return std::string_view(format.name) == kFolderFormat; }
+bool can_read(const Format& format) { return format.read || is_folder(format); }
+bool can_write(const Format& format) { return format.write || is_folder(format); }
 
 std::string extension_of(const std::string& path) {
   if (path.ends_with('/')) return "/";
@@ -58,7 +60,7 @@ std::string extension_of(const std::string& path) {
 std::vector<std::string> known_extensions(bool to_write) {
   std::vector<std::string> known;
   for (const Format& format : table())
-    if (to_write ? can_write(format) : format.read != nullptr)
+    if (to_write ? can_write(format) : can_read(format))
       known.insert(known.end(), format.extensions.begin(), format.extensions.end());
   return known;
 }
@@ -70,13 +72,15 @@ std::string hint(const std::string& wrong, const std::vector<std::string>& known
 
 const Format& find_format(const std::string& path, const std::string& name, bool to_write) {
   const char* doing = to_write ? "written" : "read";
+  std::error_code ignored;
+  const bool is_case = !to_write && std::filesystem::is_directory(path, ignored);
+  const std::string extension = is_case ? "/" : extension_of(path);
   for (const Format& format : table()) {
-    const std::string extension = extension_of(path);
     const bool is_it = name.empty() ? std::find(format.extensions.begin(), format.extensions.end(), extension) !=
                                           format.extensions.end()
                                     : name == format.name;
     if (!is_it) continue;
-    if (to_write ? can_write(format) : format.read != nullptr) return format;
+    if (to_write ? can_write(format) : can_read(format)) return format;
     throw UsageError(fmt::format("{}: {} cannot be {}; these can: {}", path, format.title, doing,
                                  fmt::join(known_extensions(to_write), " ")));
   }
@@ -87,12 +91,10 @@ const Format& find_format(const std::string& path, const std::string& name, bool
         fmt::format("unknown format '{}': {}formats are {}", name, hint(name, names), fmt::join(names, " ")));
   }
   const std::vector<std::string> known = known_extensions(to_write);
-  const std::string extension = extension_of(path);
   throw UsageError(fmt::format(
-      "{}: {}; {}types that can be {}: {}{} (or name one with --format)", path,
+      "{}: {}; {}types that can be {}: {} (a name ending in / is an OpenFOAM case; or name one with --format)", path,
       extension.empty() ? "the name has no extension that says its type" : fmt::format("unknown type '{}'", extension),
-      hint(extension, known), doing, fmt::join(known, " "),
-      to_write ? " (a name ending in / is an OpenFOAM case)" : ""));
+      hint(extension, known), doing, fmt::join(known, " ")));
 }
 
 }  // namespace
@@ -101,7 +103,7 @@ const std::vector<FormatInfo>& formats() {
   static const std::vector<FormatInfo> kFormats = [] {
     std::vector<FormatInfo> all;
     for (const Format& format : table())
-      all.push_back({format.name, format.title, format.extensions, format.read != nullptr, can_write(format)});
+      all.push_back({format.name, format.title, format.extensions, can_read(format), can_write(format)});
     return all;
   }();
   return kFormats;
@@ -113,10 +115,8 @@ const FormatInfo& format_of(const std::string& path, const std::string& format, 
 }
 
 Mesh read_mesh(const std::string& path, Context& context, const std::string& format) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    throw InputError(fmt::format("cannot read {}: it is a folder, not a file", path));
   const Format& found = find_format(path, format, false);
+  if (is_folder(found)) return read_openfoam(path, context);
   const FileBytes bytes(path);
   context.check_limits();
   return found.read(bytes.view(), path, context);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Findings as a VTP: one vertex a place with kind_id, severity, finding and first_id; the triangles that the places
-// name where their ids are triangles. The kinds' names stand in the field data, "kind:<name>" = its kind_id.
+// Findings as a VTP: one vertex a place, one line or polygon an outline, each with kind_id, severity, finding and
+// first_id. The kinds' names stand in the field data, "kind:<name>" = its kind_id.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
+#include <tuple>
 
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
-#include "io/cells.hpp"
 #include "io/output.hpp"
 #include "io/vtk_output.hpp"
 #include "io/xml.hpp"
@@ -18,13 +17,7 @@ namespace delfront {
 
 namespace {
 
-/// Kinds whose ids are triangles of the surface.
-bool names_triangles(const std::string& kind) {
-  return kind.find("triangle") != std::string::npos || kind.find("self_intersection") != std::string::npos ||
-         kind.find("overlap") != std::string::npos;
-}
-
-/// The values that every vertex and every triangle carries.
+/// The values that every point and every cell carries.
 struct Columns {
   std::vector<std::int32_t> kind, severity, finding;
   std::vector<std::int64_t> first_id;
@@ -48,66 +41,74 @@ struct Columns {
   }
 };
 
-struct DefectData {
-  std::map<std::string, std::int32_t> kinds;
-  std::vector<double> points;  // of the places, then corners of the triangles
-  Columns places, corners, triangles;
-
-  void add_point(Point p) { points.insert(points.end(), {p.x, p.y, p.z}); }
+/// Cells of one sort: offsets into the points, which stand one after the other, and their columns.
+struct Drawn {
+  std::vector<std::int64_t> connectivity, offsets;
+  Columns columns;
 };
 
-void add_triangles(const Finding& finding, std::int32_t index, std::int32_t kind, const Mesh& surface,
-                   DefectData& data) {
-  const CellBlock* block = surface.find_block(CellType::triangle);
-  if (!block) return;
-  std::vector<std::uint32_t> ids;
-  for (const Place& place : finding.places) ids.insert(ids.end(), place.ids.begin(), place.ids.end());
-  std::sort(ids.begin(), ids.end());
-  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  for (std::uint32_t id : ids) {
-    if (id >= block->size()) continue;
-    for (VertexId v : (*block)[id]) {
-      data.add_point(surface.points[v]);
-      data.corners.add(kind, finding, index, id);
+struct DefectData {
+  std::map<std::string, std::int32_t> kinds;
+  std::vector<double> points;
+  Columns of_points;
+  Drawn verts, lines, polys;
+
+  void add(Drawn& sort, const std::vector<Point>& corners, std::int32_t kind, const Finding& finding,
+           std::int32_t index, std::int64_t id) {
+    for (Point p : corners) {
+      if (!is_finite(p)) p = {};  // the viewer would refuse the whole file
+      sort.connectivity.push_back(static_cast<std::int64_t>(points.size() / 3));
+      points.insert(points.end(), {p.x, p.y, p.z});
+      of_points.add(kind, finding, index, id);
     }
-    data.triangles.add(kind, finding, index, id);
+    sort.offsets.push_back(static_cast<std::int64_t>(sort.connectivity.size()));
+    sort.columns.add(kind, finding, index, id);
   }
+};
+
+/// The outlines of a finding, each once: a triangle that crosses ten others is named ten times.
+std::vector<const Outline*> distinct_outlines(const Finding& finding) {
+  std::vector<const Outline*> all;
+  for (const Outline& outline : finding.outlines) all.push_back(&outline);
+  const auto key = [](Point p) { return std::tuple(p.x, p.y, p.z); };
+  const auto is_before = [&](const Outline* a, const Outline* b) {
+    if (a->id != b->id) return a->id < b->id;
+    return std::lexicographical_compare(a->corners.begin(), a->corners.end(), b->corners.begin(), b->corners.end(),
+                                        [&](Point p, Point q) { return key(p) < key(q); });
+  };
+  std::sort(all.begin(), all.end(), is_before);
+  const auto is_same = [](const Outline* a, const Outline* b) { return a->id == b->id && a->corners == b->corners; };
+  all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
+  return all;
 }
 
-DefectData gather(const std::vector<Finding>& findings, const Mesh* surface) {
+DefectData gather(const std::vector<Finding>& findings) {
   DefectData data;
   std::int32_t index = 0;
   for (const Finding& finding : findings) {
     const std::int32_t kind =
         data.kinds.emplace(finding.kind, static_cast<std::int32_t>(data.kinds.size())).first->second;
-    for (const Place& place : finding.places) {
-      data.add_point(is_finite(place.at) ? place.at : Point{});
-      data.places.add(kind, finding, index, place.ids.empty() ? -1 : std::int64_t{place.ids[0]});
+    for (const Place& place : finding.places)
+      data.add(data.verts, {place.at}, kind, finding, index, place.ids.empty() ? -1 : std::int64_t{place.ids[0]});
+    for (const Outline* outline : distinct_outlines(finding)) {
+      if (outline->corners.size() < 2) continue;
+      Drawn& sort = outline->corners.size() == 2 ? data.lines : data.polys;
+      data.add(sort, outline->corners, kind, finding, index, outline->id);
     }
-    ++index;
-  }
-  index = 0;
-  for (const Finding& finding : findings) {
-    if (surface && names_triangles(finding.kind))
-      add_triangles(finding, index, data.kinds[finding.kind], *surface, data);
     ++index;
   }
   return data;
 }
 
-void write_cells(VtkOutput& vtk, const char* tag, std::size_t first, std::size_t count, std::size_t corners) {
-  std::vector<std::int64_t> connectivity, offsets;
-  for (std::size_t i = 0; i < count * corners; ++i) connectivity.push_back(static_cast<std::int64_t>(first + i));
-  for (std::size_t i = 1; i <= count; ++i) offsets.push_back(static_cast<std::int64_t>(i * corners));
+void write_cells(VtkOutput& vtk, const char* tag, const Drawn& cells) {
   vtk.open(tag);
-  vtk.own("connectivity", 1, connectivity);
-  vtk.own("offsets", 1, offsets);
+  vtk.own("connectivity", 1, cells.connectivity);
+  vtk.own("offsets", 1, cells.offsets);
   vtk.close(tag);
 }
 
 void write_vtp(const DefectData& data, Output& out) {
   VtkOutput vtk(out, {}, "PolyData");
-  const std::size_t num_places = data.places.kind.size(), num_triangles = data.triangles.kind.size();
   vtk.open("PolyData");
   if (!data.kinds.empty()) {
     vtk.open("FieldData");
@@ -118,15 +119,15 @@ void write_vtp(const DefectData& data, Output& out) {
                       escape_xml(kind), id));
     vtk.close("FieldData");
   }
-  vtk.open(
-      fmt::format("Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
-                  "NumberOfPolys=\"{}\"",
-                  data.points.size() / 3, num_places, num_triangles));
-  Columns of_points = data.places, of_cells = data.places;
-  of_points.append(data.corners);
-  of_cells.append(data.triangles);
+  vtk.open(fmt::format(
+      "Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
+      "NumberOfPolys=\"{}\"",
+      data.points.size() / 3, data.verts.offsets.size(), data.lines.offsets.size(), data.polys.offsets.size()));
+  Columns of_cells = data.verts.columns;
+  of_cells.append(data.lines.columns);
+  of_cells.append(data.polys.columns);
   vtk.open("PointData");
-  of_points.write(vtk);
+  data.of_points.write(vtk);
   vtk.close("PointData");
   vtk.open("CellData");
   of_cells.write(vtk);
@@ -134,8 +135,9 @@ void write_vtp(const DefectData& data, Output& out) {
   vtk.open("Points");
   vtk.own("Points", 3, data.points);
   vtk.close("Points");
-  write_cells(vtk, "Verts", 0, num_places, 1);
-  write_cells(vtk, "Polys", num_places, num_triangles, 3);
+  write_cells(vtk, "Verts", data.verts);
+  write_cells(vtk, "Lines", data.lines);
+  write_cells(vtk, "Polys", data.polys);
   vtk.close("Piece");
   vtk.close("PolyData");
   vtk.finish();
@@ -143,12 +145,11 @@ void write_vtp(const DefectData& data, Output& out) {
 
 }  // namespace
 
-void write_defects(const std::vector<Finding>& findings, const std::string& path, const Mesh* surface,
-                   Context& context) {
+void write_defects(const std::vector<Finding>& findings, const std::string& path, Context& context) {
   context.check_limits();
   Replacement replacement(path);
   Output out(replacement.temporary(), path);
-  write_vtp(gather(findings, surface), out);
+  write_vtp(gather(findings), out);
   out.close();
   replacement.commit();
 }

@@ -231,6 +231,7 @@ void write_msh(const Mesh& mesh, Output& out, const WriteOptions& options, Conte
   if (!is_v2 && !options.version.empty() && options.version != "4.1" && options.version != "4")
     throw UsageError(fmt::format("MSH version '{}' cannot be written; 4.1 and 2.2 can", options.version));
   note_left_out_fields(mesh, "MSH", notes);
+  note_left_out_kinds(mesh, "MSH", notes);
   const std::vector<Batch> batches = make_batches(mesh);
   if (is_v2 && mesh.points.size() > 0x7fffffff) throw InputError("MSH 2.2 holds at most 2^31 - 1 nodes; write 4.1");
   MshOutput msh(out, !options.binary);

@@ -29,6 +29,9 @@ struct Patch {
   std::size_t start = 0, size = 0;
 };
 
+/// Kinds that are patch types, or zones, or said otherwise (cyclic); the others become patches like any.
+constexpr const char* kKinds[] = {"wall", "symmetry", "empty", "wedge", "patch", "interface", "cyclic"};
+
 /// Patch type of a boundary kind; cyclic needs a partner that a grid alone does not name.
 std::string patch_type(const Group& group, std::vector<std::string>& notes) {
   if (group.kind == "wall" || group.kind == "symmetry" || group.kind == "empty" || group.kind == "wedge")
@@ -67,6 +70,7 @@ class FoamWriter {
     if (faces_.num_loose > 0)
       notes.push_back(fmt::format("OpenFOAM: {} faces that bound no cell are left out", faces_.num_loose));
     note_left_out_fields(mesh, "OpenFOAM", notes);
+    note_left_out_kinds(mesh, "OpenFOAM", notes, kKinds);
   }
 
   void write(const std::string& folder, const std::string& shown) {

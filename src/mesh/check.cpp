@@ -61,9 +61,11 @@ constexpr Kind kKinds[] = {
 /// Collects the places of each kind; the message is written at the end, when the count is known.
 class Findings {
  public:
-  void add(const char* key, const Place& place) {
+  void add(const char* key, const Place& place, std::vector<Point> outline = {}) {
     Finding& finding = findings_[index_of(key)];
-    if (finding.count++ < kMaxPlaces) finding.places.push_back(place);
+    if (finding.count++ >= kMaxPlaces) return;
+    finding.places.push_back(place);
+    if (!outline.empty()) finding.outlines.push_back({place.ids.empty() ? 0 : place.ids[0], std::move(outline)});
   }
 
   std::vector<Finding> take() {
@@ -335,8 +337,8 @@ void Checker::check_boundary_edges() {
     while (end < boundary_edges_.size() && boundary_edges_[end] == boundary_edges_[first]) ++end;
     if (end - first == 2) continue;
     const auto [u, v] = boundary_edges_[first];
-    const Place place{0.5 * (mesh_.points[VertexId(u)] + mesh_.points[VertexId(v)]), {u, v}};
-    findings_.add((end - first) % 2 == 1 ? "open_boundary" : "nonmanifold_edges", place);
+    const Point a = mesh_.points[VertexId(u)], b = mesh_.points[VertexId(v)];
+    findings_.add((end - first) % 2 == 1 ? "open_boundary" : "nonmanifold_edges", {0.5 * (a + b), {u, v}}, {a, b});
   }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gates: "name op number" parted by commas. A bound from below is asked of the measure's smallest value, one from above
 // of its largest: the worst value has to hold. A measure without values (the non-orthogonality of one cell) is met.
+#include "mesh/gates.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -13,11 +15,6 @@
 namespace delfront {
 
 namespace {
-
-struct Gate {
-  std::string name, op;
-  double limit = 0;
-};
 
 std::string_view trimmed(std::string_view text) {
   const char* blanks = " \t\n\r";
@@ -59,13 +56,6 @@ std::vector<std::string> known_names(const QualityReport& report) {
   return names;
 }
 
-bool is_met(double value, const Gate& gate) {
-  if (gate.op == ">") return value > gate.limit;
-  if (gate.op == ">=") return value >= gate.limit;
-  if (gate.op == "<") return value < gate.limit;
-  return value <= gate.limit;
-}
-
 const std::size_t* find_count(const QualityReport& report, const std::string& name) {
   if (name == "num_cells") return &report.num_cells;
   if (name == "cells_below_5_deg") return &report.cells_below_5_deg;
@@ -84,7 +74,26 @@ const std::size_t* find_count(const QualityReport& report, const std::string& na
   throw UsageError(fmt::format("gate '{}': there is no such measure; {}there are {}", name, hint, listed(known)));
 }
 
-/// @return empty where the gate is met
+}  // namespace
+
+std::vector<Gate> parse_gates(const std::string& text) {
+  std::vector<Gate> gates;
+  std::string_view rest = trimmed(text);
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    gates.push_back(parse_gate(trimmed(rest.substr(0, comma))));
+    rest = trimmed(rest.substr(std::min(comma + 1, rest.size())));
+  }
+  return gates;
+}
+
+bool is_met(double value, const Gate& gate) {
+  if (gate.op == ">") return value > gate.limit;
+  if (gate.op == ">=") return value >= gate.limit;
+  if (gate.op == "<") return value < gate.limit;
+  return value <= gate.limit;
+}
+
 std::string judge(const QualityReport& report, const Gate& gate) {
   if (const std::size_t* count = find_count(report, gate.name)) {
     if (is_met(static_cast<double>(*count), gate)) return "";
@@ -92,7 +101,7 @@ std::string judge(const QualityReport& report, const Gate& gate) {
   }
   const Measure* measure = report.find(gate.name);
   if (!measure) fail_unknown(report, gate.name);
-  const bool is_from_below = gate.op[0] == '>';
+  const bool is_from_below = gate.is_from_below();
   const double value = is_from_below ? measure->min : measure->max;
   const std::vector<std::size_t>& bins = measure->histogram;
   const bool is_empty = !bins.empty() && std::all_of(bins.begin(), bins.end(), [](std::size_t n) { return n == 0; });
@@ -106,17 +115,10 @@ std::string judge(const QualityReport& report, const Gate& gate) {
   return sentence;
 }
 
-}  // namespace
-
 std::vector<std::string> failed_gates(const QualityReport& report, const std::string& gates) {
   std::vector<std::string> failed;
-  std::string_view rest = trimmed(gates);
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    std::string sentence = judge(report, parse_gate(trimmed(rest.substr(0, comma))));
-    if (!sentence.empty()) failed.push_back(std::move(sentence));
-    rest = trimmed(rest.substr(std::min(comma + 1, rest.size())));
-  }
+  for (const Gate& gate : parse_gates(gates))
+    if (std::string sentence = judge(report, gate); !sentence.empty()) failed.push_back(std::move(sentence));
   return failed;
 }
 

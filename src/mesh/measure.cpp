@@ -7,8 +7,6 @@
 namespace delfront {
 
 namespace {
-constexpr std::size_t kNumWorst = 10;
-
 constexpr MeasureKind kKinds[kNumMeasures] = {
     {"min_dihedral", "deg", true, 0, 90, 18},  {"max_dihedral", "deg", false, 0, 180, 36},
     {"min_angle", "deg", true, 0, 90, 18},     {"max_angle", "deg", false, 0, 180, 36},
@@ -21,7 +19,8 @@ constexpr MeasureKind kKinds[kNumMeasures] = {
 
 const MeasureKind& kind_of(MeasureId id) { return kKinds[static_cast<std::size_t>(id)]; }
 
-MeasureBuilder::MeasureBuilder(MeasureId id) : id_(id), worst_is_low_(kind_of(id).worst_is_low) {
+MeasureBuilder::MeasureBuilder(MeasureId id, std::size_t num_worst)
+    : id_(id), num_worst_(num_worst), worst_is_low_(kind_of(id).worst_is_low) {
   const MeasureKind& kind = kind_of(id);
   min_ = std::numeric_limits<double>::infinity();
   max_ = -min_;
@@ -44,10 +43,10 @@ bool MeasureBuilder::is_worse(const Worst& a, const Worst& b) const {
 
 void MeasureBuilder::keep_worst(const Worst& worst) {
   const auto place =
-      std::find_if(worst_.begin(), worst_.end(), [&](const Worst& other) { return is_worse(worst, other); });
+      std::partition_point(worst_.begin(), worst_.end(), [&](const Worst& other) { return !is_worse(worst, other); });
   worst_.insert(place, worst);
-  if (worst_.size() > kNumWorst) worst_.pop_back();
-  if (worst_.size() == kNumWorst) worst_limit_ = worst_.back().value;
+  if (worst_.size() > num_worst_) worst_.pop_back();
+  if (worst_.size() == num_worst_) worst_limit_ = worst_.back().value;
 }
 
 void MeasureBuilder::merge(const MeasureBuilder& other) {

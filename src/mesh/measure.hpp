@@ -36,11 +36,12 @@ enum class MeasureId : std::uint8_t {
 inline constexpr std::size_t kNumMeasures = 12;
 const MeasureKind& kind_of(MeasureId id);
 
-/// @brief Takes the values of one measure one by one; keeps sums, histogram and the worst ten (of equal ones those with
-/// the lowest ids, so that only the rounding of the sum depends on the order).
+/// @brief Takes the values of one measure one by one; keeps sums, histogram and the worst (of equal ones those with the
+/// lowest ids, so that only the rounding of the sum depends on the order).
 class MeasureBuilder {
  public:
-  explicit MeasureBuilder(MeasureId id);
+  static constexpr std::size_t kNumWorst = 10;
+  explicit MeasureBuilder(MeasureId id, std::size_t num_worst = kNumWorst);
   /// @brief Other ends for the histogram, before the first value.
   void set_range(double low, double high);
   /// @param id0, id1  of the cell, or of the two cells or points
@@ -70,6 +71,7 @@ class MeasureBuilder {
   void keep_worst(const Worst& worst);
 
   MeasureId id_;
+  std::size_t num_worst_;
   bool worst_is_low_;
   std::size_t count_ = 0;
   double sum_ = 0, min_, max_;

@@ -35,13 +35,16 @@ constexpr std::size_t kCellsBetweenChecks = 16384;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <std::size_t... i>
-std::array<MeasureBuilder, kNumMeasures> make_builders(std::index_sequence<i...>) {
-  return {MeasureBuilder(static_cast<MeasureId>(i))...};
+std::array<MeasureBuilder, kNumMeasures> make_builders(std::size_t num_worst, std::index_sequence<i...>) {
+  return {MeasureBuilder(static_cast<MeasureId>(i), num_worst)...};
 }
 
 /// What one task found.
 struct Tally {
-  std::array<MeasureBuilder, kNumMeasures> builders = make_builders(std::make_index_sequence<kNumMeasures>());
+  explicit Tally(std::size_t num_worst)
+      : builders(make_builders(num_worst, std::make_index_sequence<kNumMeasures>())) {}
+
+  std::array<MeasureBuilder, kNumMeasures> builders;
   double volume = 0, sum_of_cosines = 0;
   double shortest_squared = kInfinity, longest_squared = 0;  ///< edges
   std::size_t below_5_deg = 0, below_10_deg = 0, boundary_facets = 0, inner_facets = 0;
@@ -64,7 +67,7 @@ void Tally::merge(const Tally& other) {
 
 class QualitySweep {
  public:
-  QualitySweep(const Mesh& mesh, Context& context);
+  QualitySweep(const Mesh& mesh, Context& context, std::size_t num_worst);
   QualityReport run();
 
  private:
@@ -103,6 +106,7 @@ class QualitySweep {
   CellRange cells_;
   const CellBlock* tets_ = nullptr;
   std::size_t first_tet_ = 0;
+  std::size_t num_worst_;
   Tally total_;
 };
 
@@ -115,8 +119,13 @@ struct QualitySweep::FacetBatch {
   int size = 0;
 };
 
-QualitySweep::QualitySweep(const Mesh& mesh, Context& context)
-    : mesh_(mesh), context_(context), dimension_(mesh.top_dimension()), cells_(mesh, dimension_) {
+QualitySweep::QualitySweep(const Mesh& mesh, Context& context, std::size_t num_worst)
+    : mesh_(mesh),
+      context_(context),
+      dimension_(mesh.top_dimension()),
+      cells_(mesh, dimension_),
+      num_worst_(num_worst),
+      total_(num_worst) {
   for (const CellRange::Part& part : cells_.parts()) {
     if (part.block->type != CellType::tetrahedron) continue;
     tets_ = part.block;
@@ -162,7 +171,7 @@ void merge_tasks(Context& context, std::size_t size, std::size_t least, Tally& t
 }
 
 void QualitySweep::sweep_cells() {
-  merge_tasks(context_, cells_.size(), kLeastCells, total_, Tally(),
+  merge_tasks(context_, cells_.size(), kLeastCells, total_, Tally(num_worst_),
               [this](std::size_t first, std::size_t last, Tally& tally) { measure_cells(first, last, tally); });
 }
 
@@ -303,7 +312,7 @@ void QualitySweep::sweep_facets() {
   const CellRange none(mesh_, -1);
   const FacetSweep sweep(mesh_, cells_, none, context_.threads);
   const double low = std::sqrt(total_.shortest_squared), high = std::sqrt(total_.longest_squared);
-  Tally empty;
+  Tally empty(num_worst_);
   empty[MeasureId::edge_length].set_range(low, high);
   total_[MeasureId::edge_length].set_range(low, high);
   merge_tasks(context_, sweep.num_bins(), kLeastBins, total_, empty,
@@ -440,6 +449,8 @@ const Measure* QualityReport::find(const std::string& name) const {
   return nullptr;
 }
 
-QualityReport measure_quality(const Mesh& mesh, Context& context) { return QualitySweep(mesh, context).run(); }
+QualityReport measure_quality(const Mesh& mesh, Context& context, std::size_t num_worst) {
+  return QualitySweep(mesh, context, num_worst).run();
+}
 
 }  // namespace delfront

@@ -50,9 +50,11 @@ static void refuse_second_far_field(const std::vector<BoundaryOptions>& boundari
                       name, model.patches[PatchId(i)].name));
 }
 
-PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model, PatchId far_field) {
-  if (boundaries.empty()) return far_field;
-  constexpr std::size_t kKept = static_cast<std::size_t>(-1);
+constexpr std::size_t kKept = static_cast<std::size_t>(-1);  // no boundary selects the patch
+
+/// By patch, the last boundary that selects it.
+static std::vector<std::size_t> select_patches(const std::vector<BoundaryOptions>& boundaries, const Model& model,
+                                               PatchId far_field) {
   std::vector<std::size_t> boundary_of(model.patches.size(), kKept);
   for (std::size_t b = 0; b < boundaries.size(); ++b) {
     const std::string& pattern = boundaries[b].select.empty() ? boundaries[b].name : boundaries[b].select;
@@ -64,15 +66,20 @@ PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& 
       boundary_of[i] = b;
       found = true;
     }
+    if (found) continue;
     const std::vector<std::string> names = patch_names(model);
-    if (!found)
-      throw UsageError(fmt::format("boundaries.{}: no patch is called '{}'{}; the input has: {}", boundaries[b].name,
-                                   pattern, did_you_mean(pattern, names), fmt::join(names, ", ")));
+    throw UsageError(fmt::format("{}boundaries.{}: no patch is called '{}'{}; the input has: {}",
+                                 boundaries[b].set_at.empty() ? "" : boundaries[b].set_at + ": ", boundaries[b].name,
+                                 pattern, did_you_mean(pattern, names), fmt::join(names, ", ")));
   }
-  if (far_field.is_valid()) refuse_second_far_field(boundaries, boundary_of, model, far_field);
+  return boundary_of;
+}
+
+/// Patches of one boundary become one, at the place of the first. @return the new patch of each old one
+static std::vector<PatchId> merge_patches(const std::vector<BoundaryOptions>& boundaries,
+                                          const std::vector<std::size_t>& boundary_of, Model& model) {
   Array<PatchId, Patch> patches;
-  std::vector<PatchId> patch_of_boundary(boundaries.size());
-  std::vector<PatchId> new_patch(model.patches.size());
+  std::vector<PatchId> patch_of_boundary(boundaries.size()), new_patch(model.patches.size());
   for (std::size_t i = 0; i < model.patches.size(); ++i) {
     const Patch& old = model.patches[PatchId(i)];
     const std::size_t b = boundary_of[i];
@@ -87,9 +94,24 @@ PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& 
     }
     new_patch[i] = patch_of_boundary[b];
   }
-  for (PatchId& patch : model.patch_of_triangle) patch = new_patch[patch.index()];
   model.patches = std::move(patches);
+  return new_patch;
+}
+
+PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model, PatchId far_field) {
+  if (boundaries.empty()) return far_field;
+  const std::vector<std::size_t> boundary_of = select_patches(boundaries, model, far_field);
+  if (far_field.is_valid()) refuse_second_far_field(boundaries, boundary_of, model, far_field);
+  const std::vector<PatchId> new_patch = merge_patches(boundaries, boundary_of, model);
+  for (PatchId& patch : model.patch_of_triangle) patch = new_patch[patch.index()];
   return far_field.is_valid() ? new_patch[far_field.index()] : far_field;
+}
+
+std::vector<BoundaryOptions> boundaries_of_input(const Options& options) {
+  std::vector<BoundaryOptions> boundaries = options.boundaries;
+  const std::string& name = options.domain.enclose.name;
+  std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
+  return boundaries;
 }
 
 Mesh surface_mesh(const Model& model) {

@@ -22,6 +22,9 @@ bool matches_pattern(const std::string& name, const std::string& pattern);
 ///                     far field's name
 PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& model, PatchId far_field = {});
 
+/// @return options.boundaries without those of the far field: for looking at the input before there is one
+std::vector<BoundaryOptions> boundaries_of_input(const Options& options);
+
 /// @brief The model as a surface mesh: its points, its triangles in order, its patches as groups.
 Mesh surface_mesh(const Model& model);
 

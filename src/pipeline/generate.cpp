@@ -12,6 +12,7 @@
 
 #include "delfront/size_field.hpp"
 #include "improve/improve.hpp"
+#include "sizing/asked_sizes.hpp"
 #include "volume/recover.hpp"
 #include "volume/refine.hpp"
 #include "volume/to_mesh.hpp"
@@ -19,8 +20,6 @@
 namespace delfront {
 
 namespace {
-
-constexpr double kDefaultGrowth = 1.2;
 
 /// Turned and looked at; what cannot bound a volume goes no further.
 SurfaceReport prepare_surface(Model& model, Context& context) {
@@ -48,23 +47,21 @@ std::vector<bool> far_field_patches(const Model& model) {
   return is_far_field;
 }
 
-/// Sizes from the boundary (S1). Without a growth the largest boundary size is the largest of all.
-std::unique_ptr<SizeField> build_size_field(const TetComplex& complex, const SizeOptions& options, Context& context) {
+/// The size of every boundary vertex that the grid uses.
+BoundarySizes boundary_sizes(const TetComplex& complex) {
   BoundarySizes boundary;
-  double largest = 0;
   for (VertexIndex v = 0; v < complex.num_vertices(); ++v) {
     if (!complex.on_boundary[v] || complex.vertex_tet[v] == kNoIndex || !(complex.vertex[v].h > 0)) continue;
     boundary.points.push_back(complex.point(v));
     boundary.size.push_back(complex.vertex[v].h);
-    largest = std::max(largest, complex.vertex[v].h);
   }
-  boundary.growth = options.growth.value_or(kDefaultGrowth);
-  if (options.hmin) boundary.hmin = options.hmin->value;
-  if (options.hmax)
-    boundary.hmax = options.hmax->value;
-  else if (!options.growth)
-    boundary.hmax = std::max(largest, boundary.hmin);
-  return build_boundary_size_field(boundary, context);
+  return boundary;
+}
+
+std::unique_ptr<SizeField> build_size_field(const TetComplex& complex, const SizeOptions& options, Context& context) {
+  BoundarySizes boundary = boundary_sizes(complex);
+  const double largest = largest_size(boundary);
+  return build_asked_size_field(std::move(boundary), options, largest, context);
 }
 
 /// The field's size at every vertex, so that all sizes keep the growth.

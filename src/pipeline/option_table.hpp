@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "delfront/errors.hpp"
 #include "delfront/options.hpp"
 #include "pipeline/job_value.hpp"
 
@@ -69,6 +70,12 @@ JobValue value_from_text(Takes takes, const std::string& text);
 /// @throws UsageError  unknown key, wrong type or value
 void apply_value(Options& options, const std::string& path, const JobValue& value,
                  const std::function<std::string(int line)>& where);
+
+/// @return "case.toml:12: ", "--hmax: ", or nothing where it is not known where the key was set
+std::string place_of_key(const Options& options, const std::string& key);
+
+/// @brief For what shows only when all options are known: where the key was set, the key, the message.
+UsageError usage_error(const Options& options, const std::string& key, const std::string& message);
 
 /// @return all effective options as the job file's tree; what is not set is left out
 JobValue option_tree(const Options& options);

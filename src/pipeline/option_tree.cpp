@@ -76,10 +76,20 @@ void set_checked(const std::string& key, const std::string& allowed, const std::
   }
 }
 
+/// What `where` says, without the colon and blank that part it from a message.
+std::string place_of(const std::string& prefix) { return prefix.substr(0, prefix.find_last_not_of(": ") + 1); }
+
+/// Remember where a key was set, and each entry of a list.
+void note_place(Options& options, const std::string& key, const JobValue& value, const Where& where) {
+  options.set_at[key] = place_of(where(value.line));
+  for (std::size_t i = 0; value.is(JobValue::Kind::list) && i < value.items.size(); ++i)
+    options.set_at[fmt::format("{}[{}]", key, i)] = place_of(where(value.items[i].line));
+}
+
 BoundaryOptions& boundary_of(Options& options, const std::string& name) {
   for (BoundaryOptions& boundary : options.boundaries)
     if (boundary.name == name) return boundary;
-  options.boundaries.push_back({name, "", ""});
+  options.boundaries.push_back({.name = name, .select = "", .kind = ""});
   return options.boundaries.back();
 }
 
@@ -91,6 +101,8 @@ void apply_boundary_entry(Options& options, const std::string& name, const std::
     names.push_back(row.name);
     if (row.name != entry) continue;
     set_checked(key, row.allowed, where(value.line), [&] { row.set(boundary_of(options, name), value); });
+    BoundaryOptions& boundary = boundary_of(options, name);
+    if (entry == "select" || boundary.set_at.empty()) boundary.set_at = place_of(where(value.line));
     return;
   }
   throw UsageError(fmt::format("{}unknown key '{}'{}; allowed in [boundaries.{}]: {}", where(value.line), key,
@@ -144,12 +156,25 @@ void insert(JobValue& tree, const std::string& path, JobValue value) {
 void apply_value(Options& options, const std::string& path, const JobValue& value, const Where& where) {
   if (path == "boundaries" || path.starts_with("boundaries."))
     return apply_boundaries_value(options, path, value, where);
-  if (const OptionRow* row = find_row(path))
-    return set_checked(path, row->allowed, where(value.line), [&] { row->set(options, value); });
+  if (const OptionRow* row = find_row(path)) {
+    set_checked(path, row->allowed, where(value.line), [&] { row->set(options, value); });
+    return note_place(options, path, value, where);
+  }
   if (!path.empty() && names_in(path).empty()) fail_unknown(path, where(value.line));
   need_table(path, value, where);
   for (std::size_t i = 0; i < value.items.size(); ++i)
     apply_value(options, full_key(path, value.names[i]), value.items[i], where);
+}
+
+std::string place_of_key(const Options& options, const std::string& key) {
+  const auto it = options.set_at.find(key);
+  return it == options.set_at.end() || it->second.empty() ? "" : it->second + ": ";
+}
+
+UsageError usage_error(const Options& options, const std::string& key, const std::string& message) {
+  const std::string place = place_of_key(options, key);
+  if (place.starts_with('-')) return UsageError(place + message);  // a flag says more than its key to who typed it
+  return UsageError(fmt::format("{}{}: {}", place, key, message));
 }
 
 void set_option(Options& options, const std::string& key, const std::string& value) {

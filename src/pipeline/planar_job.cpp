@@ -7,6 +7,7 @@
 
 #include "delfront/io.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/option_table.hpp"
 #include "planar/far_field.hpp"
 
 namespace delfront {
@@ -40,13 +41,11 @@ bool is_planar_job(const std::vector<NamedMesh>& inputs) {
 }
 
 CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& scale, Context& context) {
-  std::vector<BoundaryOptions> boundaries = options.boundaries;
   const bool has_far_field = options.domain.enclose.shape != "none";
+  const bool looks_only = has_far_field && options.stop_after == "geometry";
+  const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
   CurveId far_field;
-  if (has_far_field && options.stop_after == "geometry") {
-    const std::string& name = options.domain.enclose.name;
-    std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
-  } else if (has_far_field) {
+  if (has_far_field && !looks_only) {
     far_field = add_far_field(domain, options.domain.enclose, options.size, scale, context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }
@@ -57,21 +56,23 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
       if (curve.kind.empty()) curve.kind = "wall";
   } else if (options.domain.keep == "outside" &&
              std::none_of(domain.curves.begin(), domain.curves.end(), is_far_field)) {
-    throw UsageError(
-        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield circle:50c, "
-        "or "
-        "give the outer curve the kind farfield ([boundaries.NAME])");
+    throw usage_error(options, "domain.keep",
+                      "there is no far field that bounds the outside; add e.g. --farfield circle:50c, or "
+                      "give the outer curve the kind farfield ([boundaries.NAME])");
   }
   return far_field;
 }
 
 void check_planar_outputs(const Options& options) {
-  for (const std::string& path : options.output.files)
+  for (std::size_t i = 0; i < options.output.files.size(); ++i) {
+    const std::string& path = options.output.files[i];
     if (format_of(path, options.output.format, true).name == "openfoam")
-      throw UsageError(
+      throw usage_error(
+          options, fmt::format("output.files[{}]", i),
           fmt::format("{}: an OpenFOAM case holds grids of volume cells, and the input lies in the plane; "
                       "write su2, vtu, msh or mesh, or extrude the grid by one cell",
                       path));
+  }
 }
 
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context) {

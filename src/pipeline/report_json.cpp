@@ -73,9 +73,16 @@ Json to_json(const SurfaceComponent& c) {
           {"box", to_json(c.box)}};
 }
 
+/// Places that stayed divided, each with the reason.
+Json left_json(const RecoveryReport& r) {
+  Json left = to_json(r.left, kMaxPlaces);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i]["why"] = i < r.left_why.size() ? r.left_why[i] : "";
+  return left;
+}
+
 Json to_json(const RecoveryReport& r) {
   return {{"missing_edges", r.missing_edges}, {"missing_faces", r.missing_faces}, {"steiner_points", r.steiner_points},
-          {"steiner_moved", r.steiner_moved}, {"steiner_left", r.steiner_left},   {"left", to_json(r.left, 1000)}};
+          {"steiner_moved", r.steiner_moved}, {"steiner_left", r.steiner_left},   {"left", left_json(r)}};
 }
 
 Json to_json(const KernelCounts& k) {
@@ -258,6 +265,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"failed_gates", result.failed_gates},
       {"files_written", result.files_written},
       {"defects_file", result.defects_file},
+      {"partial_file", result.partial_file},
       {"name_changes", result.name_changes},
       {"warnings", result.warnings},
       {"stages", stages},

@@ -2,6 +2,7 @@
 // A whole job. The steps stand in `work`; everything around it sees to it that however they end, the result, the
 // defects file and the report say so.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,24 +14,19 @@
 #include "delfront/job.hpp"
 #include "geometry/enclose.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/job_checks.hpp"
+#include "pipeline/job_leavings.hpp"
+#include "pipeline/option_table.hpp"
 #include "pipeline/planar_job.hpp"
 #include "pipeline/quantities.hpp"
 #include "pipeline/report_json.hpp"
+#include "pipeline/run.hpp"
 
 namespace delfront {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A job under way: what goes in, and what its steps have made so far.
-struct Run {
-  Options options;  ///< lengths are resolved to model units on the way
-  Context& context;
-  JobResult& result;
-  std::vector<NamedMesh> inputs;
-  PatchId far_field;  ///< the patch of domain.enclose, where there is one
-};
 
 /// FNV-1a, 64 bits: tells whether two runs had the same input; no protection against malice.
 void hash_file(InputFile& file) {
@@ -53,104 +49,14 @@ std::string stem_of(const std::string& path) {
   return p.stem().string();
 }
 
-bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }
-
-bool writes_grid(const Options& options) { return options.stop_after != "geometry" && options.stop_after != "improve"; }
-
-/// The gates' measures are those of volume cells, or of triangles.
-bool are_planar_gates(const std::string& gates) {
-  Mesh cell;
-  cell.dimension = 2;
-  cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  cell.block(CellType::triangle).vertices = {VertexId(0), VertexId(1), VertexId(2)};
-  cell.block(CellType::triangle).group = {cell.add_group(2, "cell")};
-  Context quiet;
-  try {
-    failed_gates(measure_quality(cell, quiet), gates);
-    return true;
-  } catch (const UsageError&) {
-    return false;
-  }
-}
-
-/// Malformed gates and unknown measures are refused before the work: tried on grids of one cell.
-void check_gates(const std::string& gates) {
-  if (gates.empty() || are_planar_gates(gates)) return;
-  Mesh cell;
-  cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  cell.block(CellType::tetrahedron).vertices = {VertexId(0), VertexId(1), VertexId(2), VertexId(3)};
-  cell.block(CellType::tetrahedron).group = {cell.add_group(3, "cell")};
-  Context quiet;
-  failed_gates(measure_quality(cell, quiet), gates);
-}
-
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;  // a device, such as /dev/null
-  const fs::path whole_a = fs::weakly_canonical(a, ignored), whole_b = fs::weakly_canonical(b, ignored);
-  return !whole_a.empty() && whole_a == whole_b;
-}
-
-/// The first of these that writing `path` would destroy, or nullptr.
-const std::string* find_same(const std::string& path, const std::vector<std::string>& others) {
-  const auto found =
-      std::find_if(others.begin(), others.end(), [&](const std::string& other) { return is_same_file(path, other); });
-  return found == others.end() ? nullptr : &*found;
-}
-
-/// No file may be written over an input or over another output of the same run.
-void check_files_differ(const Options& options) {
-  std::vector<std::string> taken = options.input.files;
-  const auto add = [&taken](const std::string& path, const char* role) {
-    if (path.empty()) return;
-    if (const std::string* other = find_same(path, taken))
-      throw UsageError(fmt::format("{} {} would be written over {}, a file of the same run; give it another name", role,
-                                   path, *other));
-    taken.push_back(path);
-  };
-  if (writes_grid(options))
-    for (const std::string& path : options.output.files) add(path, "the output");
-  add(options.output.report, "the report");
-  add(options.output.defects, "the defects file");
-}
-
-/// A grid without its cells is never written under the asked name.
-void check_holds_cells(const Options& options, const std::string& path) {
-  if (options.stop_after == "surface" || options.volume.method == "none") return;
-  const std::string& name = format_of(path, options.output.format, true).name;
-  for (const char* surface_only : {"stl", "obj", "ply", "off", "vtp"})
-    if (name == surface_only)
-      throw UsageError(
-          fmt::format("{}: {} holds surfaces only, and the result is a grid of cells; write vtu, msh, mesh, "
-                      "su2 or an OpenFOAM case (or the surface alone: --stop-after surface)",
-                      path, name));
-}
-
-/// What is wrong with the options as a whole, and with the places of the outputs, is said before any work.
-void check_before_work(const Options& options) {
-  if (options.input.files.empty()) throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
-  if (writes_grid(options) && options.output.files.empty())
-    throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
-  const EncloseOptions& enclose = options.domain.enclose;
-  if (has_far_field(options) && !enclose.corners && enclose.size.value <= 0)
-    throw UsageError("domain.enclose.size: the size of the far field is missing, e.g. size = \"20c\"");
-  if (enclose.shape == "sphere" && enclose.corners)
-    throw UsageError("domain.enclose.corners: a sphere has none; give size, or shape = \"box\"");
-  if (enclose.h && !has_far_field(options))
-    throw UsageError("--farfield-h (domain.enclose.h): there is no far field; add e.g. --farfield box:10c");
-  if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
-    throw UsageError("output.units: the unit of the input is not known; say it with --units (input.units)");
-  check_gates(options.output.require);
-  for (const std::string& path : options.input.files) format_of(path);
-  if (writes_grid(options))
-    for (const std::string& path : options.output.files) {
-      format_of(path, options.output.format, true);
-      check_holds_cells(options, path);
-      check_writable(path);
-    }
-  for (const std::string& path : {options.output.report, options.output.defects})
-    if (!path.empty()) check_writable(path);
-  check_files_differ(options);
+/// A grid given instead of a surface: its boundary is gridded, which not everyone means.
+void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& context) {
+  const int top = mesh.top_dimension();
+  const bool is_planar_grid = top == 2 && mesh.dimension == 2 && mesh.num_cells_of_dimension(1) > 0;
+  if (top < 3 && !is_planar_grid) return;
+  context.warn(fmt::format("{} is a grid of {} cells: they are not used, its {} stored {} are gridded anew", path,
+                           mesh.num_cells_of_dimension(top), mesh.num_cells_of_dimension(top - 1),
+                           is_planar_grid ? "boundary lines" : "faces"));
 }
 
 void read_inputs(Run& run) {
@@ -162,38 +68,28 @@ void read_inputs(Run& run) {
     InputFile file{files[i], 0, "", run.inputs.back().mesh.points.size(), 0};
     for (const CellBlock& block : run.inputs.back().mesh.blocks) file.num_cells += block.size();
     hash_file(file);
+    say_what_is_unused(run.inputs.back().mesh, files[i], run.context);
     run.result.inputs.push_back(std::move(file));
   }
   run.context.progress("read", files.size(), files.size(), "files");
 }
 
-/// Lengths in percent, in longest sides or in units become model units, so that nobody after us has to ask.
-void resolve_lengths(Options& options, const LengthScale& scale) {
-  const auto resolve = [&scale](auto& length) {
-    if (length) length = Length{resolve_length(*length, scale), ""};
-  };
-  resolve(options.size.hmin);
-  resolve(options.size.hmax);
-  resolve(options.domain.enclose.h);
+/// What percent, longest sides and units mean is known once the input's box is.
+void set_scale(Run& run, const Box& box) {
+  Options& options = run.options;
+  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(options.input.units)};
+  resolve_lengths(options, run.result.scale);
   EncloseOptions& enclose = options.domain.enclose;
-  if (enclose.size.value > 0) enclose.size = {resolve_length(enclose.size, scale), ""};
-  if (options.size.hmin && options.size.hmax && options.size.hmin->value > options.size.hmax->value)
-    throw UsageError(
-        fmt::format("size.hmin ({:g}) is above size.hmax ({:g})", options.size.hmin->value, options.size.hmax->value));
-  // no side above hmax, on the far field neither
-  if (has_far_field(options) && !enclose.h && options.size.hmax)
+  if (has_far_field(options) && !enclose.h && options.size.hmax)  // no side above hmax, on the far field neither
     enclose.h = Length{std::min(default_far_field_side(enclose), options.size.hmax->value), ""};
 }
 
 /// The far field and the patches' names and kinds. What the input holds is a wall in the flow unless said otherwise.
 void set_boundaries(Run& run, Model& model) {
   Options& options = run.options;
-  std::vector<BoundaryOptions> boundaries = options.boundaries;
-  if (has_far_field(options) && options.stop_after == "geometry") {
-    // Only the input is looked at: what is said of the far field has nothing to stand for.
-    const std::string& name = options.domain.enclose.name;
-    std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
-  } else if (has_far_field(options)) {
+  const bool looks_only = has_far_field(options) && options.stop_after == "geometry";
+  const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
+  if (has_far_field(options) && !looks_only) {
     run.far_field = add_far_field(model, options.domain.enclose, run.result.scale, run.context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }
@@ -204,18 +100,16 @@ void set_boundaries(Run& run, Model& model) {
   } else if (options.domain.keep == "outside" &&
              std::none_of(model.patches.begin(), model.patches.end(),
                           [](const Patch& patch) { return patch.kind == "farfield"; })) {
-    throw UsageError(
-        "--keep outside (domain.keep): there is no far field that bounds the outside; add e.g. --farfield box:10c, or "
-        "give the outer patch the kind farfield ([boundaries.NAME])");
+    throw usage_error(options, "domain.keep",
+                      "there is no far field that bounds the outside; add e.g. --farfield box:10c, or "
+                      "give the outer patch the kind farfield ([boundaries.NAME])");
   }
 }
 
 Model make_model(Run& run) {
   Model model = build_model(run.inputs, run.context);
   model.feature_angle = run.options.input.feature_angle;
-  const Box box = model.bounding_box();
-  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
-  resolve_lengths(run.options, run.result.scale);
+  set_scale(run, model.bounding_box());
   set_boundaries(run, model);
   return model;
 }
@@ -263,18 +157,27 @@ Outcome generate_in_far_field(const Run& run, Model model) {
   return outcome;
 }
 
+void judge_grid(Run& run) {
+  const std::string& gates = run.options.output.require;
+  if (gates.empty()) return;
+  run.result.failed_gates = failed_gates(run.result.report.quality, gates);
+  if (run.result.failed_gates.empty()) return;
+  Context quiet;  // looking for the places must not cost the grid
+  quiet.threads = run.context.threads;
+  run.gate_failures = find_gate_failures(run.result.mesh, gates, quiet);
+}
+
 void finish(Run& run, Outcome outcome) {
   run.result.report = std::move(outcome.report);
   run.result.mesh = std::move(outcome.mesh);
   run.context.check_cells(run.result.report.quality.num_cells);
-  if (!run.options.output.require.empty())
-    run.result.failed_gates = failed_gates(run.result.report.quality, run.options.output.require);
+  judge_grid(run);
   if (writes_grid(run.options)) write_outputs(run);
   if (run.result.failed_gates.empty()) return;
   run.result.exit_code = ExitCode::gate_not_met;
-  run.result.error = "the grid was written, but does not meet: " + run.result.failed_gates[0];
-  for (std::size_t i = 1; i < run.result.failed_gates.size(); ++i)
-    run.result.error += "; " + run.result.failed_gates[i];
+  run.result.error = fmt::format("the grid {}: {}",
+                                 run.result.files_written.empty() ? "does not meet" : "was written, but does not meet",
+                                 fmt::join(run.result.failed_gates, "; "));
 }
 
 /// Lines in the plane: the same steps, over curves instead of patches.
@@ -283,8 +186,7 @@ void work_in_the_plane(Run& run) {
   PlanarDomain domain = build_planar_domain(run.inputs, run.context);
   Box box;
   for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
-  run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(run.options.input.units)};
-  resolve_lengths(run.options, run.result.scale);
+  set_scale(run, box);
   const CurveId far_field = set_curves(domain, run.options, run.result.scale, run.context);
   if (run.options.stop_after == "geometry" || run.options.stop_after == "surface" ||
       run.options.volume.method == "none") {
@@ -302,7 +204,7 @@ void work_in_the_plane(Run& run) {
 
 void work(Run& run) {
   check_floating_point_mode();
-  check_before_work(run.options);
+  check_job(run.options);
   read_inputs(run);
   if (is_planar_job(run.inputs)) return work_in_the_plane(run);
   Model model = make_model(run);
@@ -313,54 +215,16 @@ void work(Run& run) {
   finish(run, generate_in_far_field(run, std::move(model)));
 }
 
-std::string default_defects_path(const Options& options) {
-  fs::path base = options.output.files.empty() ? options.input.files.front() : options.output.files.front();
-  if (!base.has_filename()) base = base.parent_path();
-  if (options.output.files.empty()) base = base.filename();  // beside the input may be no place for us: where we are
-  return (base.parent_path() / (base.stem().string() + "_defects.vtp")).string();
-}
-
-/// Everything that is wrong, with places, for the viewer. Best effort: it must not hide why the run failed.
-void write_defects_file(Run& run) {
-  Context quiet;  // neither the limit nor the signal that ended the run may end this
-  JobResult& result = run.result;
-  Mesh surface;
-  try {
-    if (result.exit_code == ExitCode::bad_input && !run.inputs.empty() && result.report.surface.findings.empty() &&
-        !is_planar_job(run.inputs)) {
-      const Model model = build_model(run.inputs, quiet);
-      surface = surface_mesh(model);
-      result.report.surface = check_surface(model, quiet);
-    }
-  } catch (const Error&) {
-    // the input is too broken to look at: the places of the error itself are what there is
-  }
-  std::vector<Finding> findings = result.report.surface.findings;
-  std::vector<Place> places = result.places;
-  std::erase_if(places, [](const Place& place) { return !is_finite(place.at); });
-  if (!places.empty() && !has_errors(findings))
-    findings.push_back({outcome_name(result.exit_code), Severity::error, places.size(), result.error, "", places});
-  const bool is_asked_for = !run.options.output.defects.empty();
-  if (findings.empty() || (!is_asked_for && !has_errors(findings))) return;
-  const std::string path = is_asked_for ? run.options.output.defects : default_defects_path(run.options);
-  try {
-    if (find_same(path, run.options.input.files))
-      throw UsageError(path + " is an input; --defects FILE names another place");
-    write_defects(findings, path, surface.points.empty() ? nullptr : &surface, quiet);
-    result.defects_file = path;
-  } catch (const Error& e) {
-    result.warnings.push_back(fmt::format("no defects file: {}", e.what()));
-  }
-}
-
 void put_error(JobResult& result, ExitCode code, const std::string& message, std::vector<Place> places = {}) {
   result.exit_code = code;
   result.error = message;
   result.places = std::move(places);
-  if (!result.files_written.empty() && code == ExitCode::interrupted) {
-    result.error = "interrupted; complete are:";
-    for (const std::string& path : result.files_written) result.error += " " + path;
-  }
+  if (code != ExitCode::interrupted && code != ExitCode::limit_reached) return;
+  if (code == ExitCode::interrupted) result.error = "interrupted";
+  if (result.files_written.empty())
+    result.error += "; nothing was written";
+  else
+    result.error += fmt::format("; complete are: {}", fmt::join(result.files_written, " "));
 }
 
 /// Run the steps; every way they can end becomes an exit code and a sentence.
@@ -368,6 +232,9 @@ void work_and_catch(Run& run) {
   JobResult& result = run.result;
   try {
     work(run);
+  } catch (const MeshingError& e) {
+    put_error(result, e.exit_code, e.what(), e.places);
+    if (e.partial) run.partial = *e.partial;
   } catch (const Error& e) {
     put_error(result, e.exit_code, e.what(), e.places);
   } catch (const std::bad_alloc&) {
@@ -384,7 +251,8 @@ void work_and_catch(Run& run) {
 /// The report of the run. That it cannot be written is the run's failure only where nothing worse happened.
 void write_report(const Options& options, const std::string& command, JobResult& result) {
   if (options.output.report.empty()) return;
-  if (find_same(options.output.report, options.input.files) || find_same(options.output.report, options.output.files))
+  if (find_same_file(options.output.report, options.input.files) ||
+      find_same_file(options.output.report, options.output.files))
     return;  // refused before the work
   try {
     write_text_file(options.output.report, report_json(result, options, command));
@@ -417,14 +285,12 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
     result.stage = progress.stage;
     if (outer_progress) outer_progress(progress);
   };
-  Run run{options, context, result, {}, {}};
+  Run run{options, context, result, {}, {}, {}, {}};
   work_and_catch(run);
   context.on_log = outer_log;
   context.on_progress = outer_progress;
-  const bool may_have_defects = result.exit_code == ExitCode::bad_input ||
-                                result.exit_code == ExitCode::meshing_failed || !options.output.defects.empty();
-  if (may_have_defects && result.exit_code != ExitCode::usage && result.exit_code != ExitCode::cannot_write)
-    write_defects_file(run);
+  leave_defects(run);
+  leave_partial_grid(run);
   for (const std::string& warning : result.report.warnings)
     if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end())
       result.warnings.push_back(warning);

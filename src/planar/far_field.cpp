@@ -7,20 +7,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/enclose.hpp"
+#include "sizing/asked_sizes.hpp"
+
 namespace delfront {
 
 namespace {
 
-constexpr double kDefaultGrowth = 1.2;
 constexpr double kFewestOnCircle = 16;
 constexpr double kMostSegments = 5e7;
-
-double to_model_units(const Length& length, const LengthScale& scale) {
-  if (length.unit.empty()) return length.value;
-  if (length.unit == "%") return length.value / 100 * scale.diagonal;
-  if (length.unit == "c") return length.value * scale.longest_side;
-  throw UsageError(fmt::format("enclose: a length in {} must be turned into model units first", length.unit));
-}
 
 double mean_segment(const PlanarDomain& domain) {
   double sum = 0;
@@ -81,43 +76,64 @@ std::string unused_name(const PlanarDomain& domain, const std::string& wanted) {
   return name;
 }
 
-}  // namespace
+/// The outer line of the domain, and how far it is from what it encloses.
+struct Outline2 {
+  Point2 centre, low, high;  ///< low and high: of a box
+  double reach = 0;          ///< radius, or shortest half side
+  bool is_box = false;
+};
 
-CurveId add_far_field(PlanarDomain& domain, const EncloseOptions& options, const SizeOptions& sizes,
-                      const LengthScale& scale, Context& context) {
-  if (options.shape == "none") return {};
-  const bool is_box = options.shape == "box";
-  Box box;
-  for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
-  const Point2 centre{box.centre().x, box.centre().y};
-  const double size = is_box && options.corners ? 0 : to_model_units(options.size, scale);
-  if (!(is_box && options.corners) && !(size > 0 && std::isfinite(size)))
-    throw UsageError(
-        fmt::format("enclose: the {} is {:g}; it must be positive and finite", is_box ? "half side" : "radius", size));
-  Point2 low{centre.x - size, centre.y - size}, high{centre.x + size, centre.y + size};
-  if (is_box && options.corners) {
+Outline2 outline_of(const Box& box, const EncloseOptions& options, const LengthScale& scale) {
+  Outline2 outline;
+  outline.is_box = options.shape == "box";
+  outline.centre = {box.centre().x, box.centre().y};
+  if (outline.is_box && options.corners) {
     const auto& c = *options.corners;
-    low = {c[0], c[1]};
-    high = {c[3], c[4]};
+    outline.low = {c[0], c[1]};
+    outline.high = {c[3], c[4]};
+    outline.reach = 0.5 * std::min(c[3] - c[0], c[4] - c[1]);
+    return outline;
   }
-  const double reach = is_box ? 0.5 * std::min(high.x - low.x, high.y - low.y) : size;
-  const double distance = std::max(reach - 0.5 * box.longest_side(), 0.0);
-  const double h = options.h ? to_model_units(*options.h, scale) : side_by_growth(domain, sizes, distance);
-  if (!(h > 0) || reach / h > kMostSegments)
-    throw UsageError(fmt::format("enclose: sides of {:g} on the far field; ask for a larger h", h));
-  const std::vector<Point2> loop = is_box ? make_box(low, high, h) : make_circle(centre, size, h);
-  check_encloses(domain, loop, centre);
-  const std::string name = unused_name(domain, options.name);
-  if (name != options.name)
-    context.warn(fmt::format("the far field is called '{}', as the name '{}' is taken", name, options.name));
-  const CurveId curve = domain.curves.next_id();
-  domain.curves.push_back({name, "farfield"});
+  const double size = to_model_units(options.size, scale);
+  if (!(size > 0 && std::isfinite(size)))
+    throw UsageError(fmt::format("enclose: the {} is {:g}; it must be positive and finite",
+                                 outline.is_box ? "half side" : "radius", size));
+  outline.low = {outline.centre.x - size, outline.centre.y - size};
+  outline.high = {outline.centre.x + size, outline.centre.y + size};
+  outline.reach = size;
+  return outline;
+}
+
+void append_loop(PlanarDomain& domain, const std::vector<Point2>& loop, CurveId curve) {
   const std::size_t first = domain.points.size();
   for (const Point2 p : loop) domain.points.push_back(p);
   for (std::size_t i = 0; i < loop.size(); ++i) {
     domain.segments.push_back({VertexId(first + i), VertexId(first + (i + 1) % loop.size())});
     domain.curve_of_segment.push_back(curve);
   }
+}
+
+}  // namespace
+
+CurveId add_far_field(PlanarDomain& domain, const EncloseOptions& options, const SizeOptions& sizes,
+                      const LengthScale& scale, Context& context) {
+  if (options.shape == "none") return {};
+  Box box;
+  for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
+  const Outline2 outline = outline_of(box, options, scale);
+  const double distance = std::max(outline.reach - 0.5 * box.longest_side(), 0.0);
+  const double h = options.h ? to_model_units(*options.h, scale) : side_by_growth(domain, sizes, distance);
+  if (!(h > 0) || outline.reach / h > kMostSegments)
+    throw UsageError(fmt::format("enclose: sides of {:g} on the far field; ask for a larger h", h));
+  const std::vector<Point2> loop =
+      outline.is_box ? make_box(outline.low, outline.high, h) : make_circle(outline.centre, outline.reach, h);
+  check_encloses(domain, loop, outline.centre);
+  const std::string name = unused_name(domain, options.name);
+  if (name != options.name)
+    context.warn(fmt::format("the far field is called '{}', as the name '{}' is taken", name, options.name));
+  const CurveId curve = domain.curves.next_id();
+  domain.curves.push_back({name, "farfield"});
+  append_loop(domain, loop, curve);
   return curve;
 }
 

@@ -10,12 +10,12 @@
 #include "planar/refine.hpp"
 #include "planar/split.hpp"
 #include "planar/to_mesh.hpp"
+#include "sizing/asked_sizes.hpp"
 
 namespace delfront {
 
 namespace {
 
-constexpr double kDefaultGrowth = 1.2;
 constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates want
 
 void check_domain(const PlanarDomain& domain) {
@@ -55,6 +55,18 @@ PlanarGrid triangulate(const PlanarDomain& domain, const DomainOptions& options,
   return grid;
 }
 
+double nearest_neighbour(const TriComplex& c, VertexIndex v) {
+  double nearest = 1e300;
+  const EdgeRef first = c.first_edge(v);
+  EdgeRef ref = first;
+  do {
+    if (const VertexIndex w = c.target(ref); w != kInfinity)
+      nearest = std::min(nearest, std::sqrt(squared_length(c.point[w] - c.point[v])));
+    ref = c.turn_left(ref);
+  } while (ref != first);
+  return nearest;
+}
+
 /// At each point of the boundary the mean length of its segments there; at points that stand free the nearest one's
 /// distance where that is less than what the field would have.
 BoundarySizes measure_boundary(const PlanarGrid& grid) {
@@ -73,17 +85,9 @@ BoundarySizes measure_boundary(const PlanarGrid& grid) {
   BoundarySizes sizes;
   for (VertexIndex v = 0; v < c.point.size(); ++v) {
     if (c.vertex_tri[v] == kNoTri) continue;
-    double h = count[v] > 0 ? sum[v] / count[v] : 1e300;
-    if (count[v] == 0) {
-      if (c.tri[c.vertex_tri[v]].region == kOutside) continue;
-      const EdgeRef first = c.first_edge(v);
-      EdgeRef ref = first;
-      do {
-        if (const VertexIndex w = c.target(ref); w != kInfinity)
-          h = std::min(h, std::sqrt(squared_length(c.point[w] - c.point[v])));
-        ref = c.turn_left(ref);
-      } while (ref != first);
-    }
+    const bool is_free = count[v] == 0;
+    if (is_free && c.tri[c.vertex_tri[v]].region == kOutside) continue;
+    const double h = is_free ? nearest_neighbour(c, v) : sum[v] / count[v];
     sizes.points.push_back({c.point[v].x, c.point[v].y, 0});
     sizes.size.push_back(h);
   }
@@ -110,25 +114,6 @@ class LesserField : public SizeField {
   const std::unique_ptr<SizeField>& one_;  ///< may be built anew
   const SizeField* two_;
 };
-
-/// Sizes from the boundary (S1). Without a growth the largest boundary size is the largest of all.
-std::unique_ptr<SizeField> build_size_field(const PlanarGrid& grid, const SizeOptions& options, double largest,
-                                            Context& context) {
-  BoundarySizes boundary = measure_boundary(grid);
-  boundary.growth = options.growth.value_or(kDefaultGrowth);
-  if (options.hmin) boundary.hmin = options.hmin->value;
-  if (options.hmax)
-    boundary.hmax = options.hmax->value;
-  else if (!options.growth)
-    boundary.hmax = std::max(largest, boundary.hmin);
-  return build_boundary_size_field(boundary, context);
-}
-
-double largest_of(const BoundarySizes& sizes) {
-  double largest = 0;
-  for (const double h : sizes.size) largest = std::max(largest, h);
-  return largest;
-}
 
 /// The field's size at every vertex, so that all sizes keep the growth.
 void set_vertex_sizes(TriComplex& complex, const SizeField& field) {
@@ -163,12 +148,13 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
   Outcome outcome;
   Report& report = outcome.report;
   PlanarGrid grid = triangulate(domain, options.domain, context);
-  const double largest = largest_of(measure_boundary(grid));
-  auto by_boundary = build_size_field(grid, options.size, largest, context);
+  BoundarySizes sizes = measure_boundary(grid);
+  const double largest = largest_size(sizes);
+  auto by_boundary = build_asked_size_field(std::move(sizes), options.size, largest, context);
   const LesserField both(by_boundary, size);
   if (options.planar.boundary == "split") {
     split_segments(grid, both, context);
-    by_boundary = build_size_field(grid, options.size, largest, context);
+    by_boundary = build_asked_size_field(measure_boundary(grid), options.size, largest, context);
   }
   const SizeField& field = size ? static_cast<const SizeField&>(both) : *by_boundary;
   set_vertex_sizes(grid.complex, field);

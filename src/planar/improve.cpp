@@ -184,10 +184,7 @@ class Improvement {
   bool insert(TriIndex t) {
     const Triangle s = c_.tri[t];
     const Point2 a = at(s.node[0]), b = at(s.node[1]), d = at(s.node[2]);
-    const Point2 ab = b - a, ad = d - a;
-    const double f = 0.5 / cross(ab, ad), ab2 = squared_length(ab), ad2 = squared_length(ad);
-    const Point2 centre = a + Point2{f * (ad.y * ab2 - ab.y * ad2), f * (ab.x * ad2 - ad.x * ab2)};
-    const Point2 centroid = (1.0 / 3) * (a + b + d);
+    const Point2 centre = a + c_.to_circumcentre(s), centroid = (1.0 / 3) * (a + b + d);
     Point2 best{};
     double best_gain = kGain;
     for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0}) {
@@ -212,16 +209,20 @@ class Improvement {
     return true;
   }
 
-  /// Worst quality after an insertion at p over that before; 0 where it cannot be. Leaves the cavity in the kernel.
+  /// Worst quality after an insertion at p over that before; 0 where it cannot be, or would leave t. Leaves
+  /// the cavity in the kernel.
   double gain_at(Point2 p, TriIndex t) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return 0;
     const TriIndex holder = kernel_.locate(p, t);
     if (c_.tri[holder].region != c_.tri[t].region || c_.is_ghost(holder)) return 0;
     kernel_.grow_cavity(holder, p);
     double before = 1, after = 1;
+    bool holds_it = false;
     for (const TriIndex u : kernel_.cavity()) {
       before = std::min(before, quality(u));
+      holds_it |= u == t;
     }
+    if (!holds_it) return 0;
     for (const PlanarKernel::CavityEdge& edge : kernel_.edges()) {
       if (edge.a == kInfinity || edge.b == kInfinity) return 0;
       const double nearest = kNearest * c_.h[edge.a];
@@ -229,9 +230,7 @@ class Improvement {
       if (orient2d(at(edge.a), at(edge.b), p) <= 0) return 0;
       after = std::min(after, squared_sine(at(edge.a), at(edge.b), p));
     }
-    bool holds_it = false;
-    for (const TriIndex u : kernel_.cavity()) holds_it |= u == t;
-    return holds_it && before > 0 ? after / before : holds_it ? after * 1e300 : 0;
+    return before > 0 ? after / before : after * 1e300;
   }
 
   /// Take a vertex away and fill its star with Delaunay ears.

@@ -96,13 +96,6 @@ class Refinement {
 
   double mean_size(const Triangle& s) const { return (c_.h[s.node[0]] + c_.h[s.node[1]] + c_.h[s.node[2]]) / 3; }
 
-  /// Relative to the first node.
-  Point2 circumcentre(const Triangle& s) const {
-    const Point2 a = c_.point[s.node[0]], b = c_.point[s.node[1]] - a, d = c_.point[s.node[2]] - a;
-    const double b2 = squared_length(b), d2 = squared_length(d), f = 0.5 / cross(b, d);
-    return {f * (d.y * b2 - b.y * d2), f * (b.x * d2 - d.x * b2)};
-  }
-
   /// R^2 = a^2 b^2 c^2 / (16 area^2), without dividing.
   bool is_accepted(const Triangle& s) const {
     const Point2 a = c_.point[s.node[0]], b = c_.point[s.node[1]], d = c_.point[s.node[2]];
@@ -142,7 +135,7 @@ class Refinement {
     proposals_.clear();
     for (const TriIndex t : candidates_) {
       const Triangle& s = c_.tri[t];
-      const Point2 centre = circumcentre(s);
+      const Point2 centre = c_.to_circumcentre(s);
       if (!std::isfinite(squared_length(centre))) continue;
       if (is_frontal)
         propose_over_edge(t, s, c_.point[s.node[0]] + centre);

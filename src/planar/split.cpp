@@ -2,8 +2,8 @@
 #include "planar/split.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "planar/edit.hpp"
 
@@ -36,7 +36,30 @@ class Splitting {
     return c_.tri[ref >> 2].region != kOutside || c_.tri[c_.across(ref) >> 2].region != kOutside;
   }
 
-  /// Points along each piece so that each part is about as long as the size there: equal parts of the integral of 1/h.
+  /// Where to divide the line a + t along, 0 < t < 1, so that each part is about as long as the size there: equal parts
+  /// of the integral of 1/h.
+  std::vector<double> places_by_size(Point2 a, Point2 along) const {
+    std::array<Point, kSamples> places;
+    std::array<double, kSamples> sizes, sum;
+    for (std::size_t k = 0; k < kSamples; ++k) {
+      const Point2 p = a + (static_cast<double>(k) / (kSamples - 1)) * along;
+      places[k] = {p.x, p.y, 0};
+    }
+    size_.sizes(places, sizes);
+    const double step = std::sqrt(squared_length(along)) / (kSamples - 1);
+    sum[0] = 0;
+    for (std::size_t k = 1; k < kSamples; ++k) sum[k] = sum[k - 1] + 0.5 * step * (1 / sizes[k - 1] + 1 / sizes[k]);
+    const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(sum.back())));
+    std::vector<double> result;
+    for (std::size_t part = 1, k = 1; part < parts; ++part) {
+      const double wanted = sum.back() * static_cast<double>(part) / static_cast<double>(parts);
+      while (sum[k] < wanted) ++k;
+      const double share = (wanted - sum[k - 1]) / (sum[k] - sum[k - 1]);
+      result.push_back((static_cast<double>(k - 1) + share) / (kSamples - 1));
+    }
+    return result;
+  }
+
   void split_by_size() {
     const std::size_t num_given = grid_.pieces.size();
     for (std::size_t i = 0; i < num_given; ++i) {
@@ -44,26 +67,9 @@ class Splitting {
       const PlanarPiece piece = grid_.pieces[i];
       if (!is_in_use(piece)) continue;
       const Point2 a = at(piece.a), along = at(piece.b) - a;
-      std::array<Point, kSamples> places;
-      std::array<double, kSamples> sizes, sum;
-      for (std::size_t k = 0; k < kSamples; ++k) {
-        const Point2 p = a + (static_cast<double>(k) / (kSamples - 1)) * along;
-        places[k] = {p.x, p.y, 0};
-      }
-      size_.sizes(places, sizes);
-      const double step = std::sqrt(squared_length(along)) / (kSamples - 1);
-      sum[0] = 0;
-      for (std::size_t k = 1; k < kSamples; ++k) sum[k] = sum[k - 1] + 0.5 * step * (1 / sizes[k - 1] + 1 / sizes[k]);
-      const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(sum.back())));
-      std::size_t current = i, k = 1;
-      for (std::size_t part = 1; part < parts; ++part) {
-        const double wanted = sum.back() * static_cast<double>(part) / static_cast<double>(parts);
-        while (sum[k] < wanted) ++k;
-        const double share = (wanted - sum[k - 1]) / (sum[k] - sum[k - 1]);
-        const double t = (static_cast<double>(k - 1) + share) / (kSamples - 1);
-        const std::size_t after = split(current, a + t * along);
-        if (after != kNone) current = after;
-      }
+      std::size_t current = i;
+      for (const double t : places_by_size(a, along))
+        if (const std::size_t after = split(current, a + t * along); after != kNone) current = after;
     }
   }
 
@@ -96,16 +102,15 @@ class Splitting {
   void find_acute_corners() {
     is_acute_.assign(c_.point.size(), false);
     std::vector<std::vector<Point2>> directions(c_.point.size());
+    const auto add = [&](VertexIndex v, Point2 d) {
+      for (const Point2 other : directions[v]) is_acute_[v] = is_acute_[v] || dot(d, other) > kAcuteCosine;
+      directions[v].push_back(d);
+    };
     for (const PlanarPiece& piece : grid_.pieces) {
       const Point2 along = at(piece.b) - at(piece.a);
       const Point2 d = (1 / std::sqrt(squared_length(along))) * along;
-      for (const Point2 other : directions[piece.a])
-        is_acute_[piece.a] = is_acute_[piece.a] || dot(d, other) > kAcuteCosine;
-      directions[piece.a].push_back(d);
-      const Point2 back = -1 * d;
-      for (const Point2 other : directions[piece.b])
-        is_acute_[piece.b] = is_acute_[piece.b] || dot(back, other) > kAcuteCosine;
-      directions[piece.b].push_back(back);
+      add(piece.a, d);
+      add(piece.b, -1 * d);
     }
   }
 
@@ -122,6 +127,8 @@ class Splitting {
     return false;
   }
 
+  /// The middle; from an acute corner a power of two, so that pieces that meet there end on common circles and do not
+  /// encroach upon each other for ever.
   Point2 place_in(const PlanarPiece& piece) const {
     const Point2 a = at(piece.a), b = at(piece.b);
     if (is_acute(piece.a) == is_acute(piece.b)) return 0.5 * (a + b);
@@ -133,27 +140,26 @@ class Splitting {
     return corner + (shell / length) * along;
   }
 
+  /// Halves a piece that has a corner in its circle. @return whether it did
+  bool split_if_encroached(std::size_t i) {
+    const PlanarPiece piece = grid_.pieces[i];
+    if (!is_encroached(piece)) return false;
+    const Point2 p = place_in(piece);
+    const double shortest = kShortest * size_.size({p.x, p.y, 0});
+    if (squared_length(at(piece.b) - at(piece.a)) < 4 * shortest * shortest) return false;
+    return split(i, p) != kNone;
+  }
+
+  /// Sweeps over all pieces until one changes nothing: new points may stand in the circles of others, and a sweep costs
+  /// no more than the search for those would.
   void split_encroached() {
-    std::vector<std::size_t> work(grid_.pieces.size());
-    std::iota(work.begin(), work.end(), std::size_t(0));
-    while (!work.empty()) {
-      std::vector<std::size_t> next;
-      for (const std::size_t i : work) {
+    for (bool is_done = false; !is_done;) {
+      is_done = true;
+      const std::size_t num_pieces = grid_.pieces.size();
+      for (std::size_t i = 0; i < num_pieces; ++i) {
         if (i % kPiecesPerCancelCheck == 0) context_.check_limits();
-        const PlanarPiece piece = grid_.pieces[i];
-        if (!is_encroached(piece)) continue;
-        const Point2 p = place_in(piece);
-        const double shortest = kShortest * size_.size({p.x, p.y, 0});
-        if (squared_length(at(piece.b) - at(piece.a)) < 4 * shortest * shortest) continue;
-        const std::size_t made = split(i, p);
-        if (made == kNone) continue;
-        next.push_back(i);
-        next.push_back(made);
+        if (split_if_encroached(i)) is_done = false;
       }
-      if (next.empty()) break;
-      // New points may stand in the circles of others; a sweep over all costs no more than the look that finds them.
-      work.resize(grid_.pieces.size());
-      std::iota(work.begin(), work.end(), std::size_t(0));
     }
   }
 

@@ -53,6 +53,12 @@ class TriComplex {
   std::vector<TriIndex> free_slots;
 
   bool is_ghost(TriIndex t) const { return tri[t].node[2] == kInfinity; }
+  /// @brief Circumcentre relative to the first corner; not finite for a flat triangle.
+  Point2 to_circumcentre(const Triangle& s) const {
+    const Point2 a = point[s.node[0]], b = point[s.node[1]] - a, d = point[s.node[2]] - a;
+    const double b2 = squared_length(b), d2 = squared_length(d), f = 0.5 / cross(b, d);
+    return {f * (d.y * b2 - b.y * d2), f * (b.x * d2 - d.x * b2)};
+  }
   bool is_dead(TriIndex t) const { return tri[t].flags & kDead; }
   bool is_constrained(EdgeRef ref) const { return tri[ref >> 2].flags >> (ref & 3) & 1; }
   EdgeRef across(EdgeRef ref) const { return tri[ref >> 2].neigh[ref & 3]; }

@@ -13,6 +13,7 @@
 #include "delaunay/delaunay.hpp"
 #include "volume/edge_flips.hpp"
 #include "volume/facets.hpp"
+#include "volume/partial.hpp"
 #include "volume/regions.hpp"
 #include "volume/segments.hpp"
 #include "volume/thin_out.hpp"
@@ -145,11 +146,11 @@ bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments
 }
 
 /// The complex with all facets in it. Edges and facets that resist get points on their edges, and all starts over.
-TetComplex recover_boundary(const Model& model, Segments& segments, std::vector<Subface>& subfaces,
-                            RecoveryReport& report, Context& context) {
+void recover_boundary(const Model& model, Segments& segments, TetComplex& complex, std::vector<Subface>& subfaces,
+                      RecoveryReport& report, Context& context) {
   std::vector<TriangleId> failed;
   for (int restart = 0; restart < kMaxRestarts; ++restart) {
-    TetComplex complex = complex_of_vertices(model, segments);
+    complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
     build_delaunay(complex, context);
     insert_chains(complex, kernel, model, segments);
@@ -160,7 +161,7 @@ TetComplex recover_boundary(const Model& model, Segments& segments, std::vector<
     std::size_t num_missing = 0;
     failed = recover_facets(complex, model, segments, required, subfaces, num_missing, context);
     if (restart == 0 || report.missing_faces == 0) report.missing_faces = num_missing;
-    if (failed.empty()) return complex;
+    if (failed.empty()) return;
     for (const TriangleId t : failed)
       for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
   }
@@ -227,18 +228,19 @@ void undo_stretch(TetComplex& complex, const Model& model, const Segments& segme
 }
 
 /// All of recovery, with coordinates stretched by `factor` as long as edges and facets are recovered.
-BoundaryGrid try_boundary(const Model& model, const std::array<double, 3>& factor, std::size_t most_steiner,
-                          const DomainOptions& domain, const std::vector<bool>& is_far_field, RecoveryReport& report,
-                          Context& context) {
+/// @param grid  holds what there is, also when this throws
+void try_boundary(const Model& model, const std::array<double, 3>& factor, std::size_t most_steiner,
+                  const DomainOptions& domain, const std::vector<bool>& is_far_field, BoundaryGrid& grid,
+                  RecoveryReport& report, Context& context) {
   const bool is_plain = factor == std::array<double, 3>{1, 1, 1};
   const Model stretched_model = is_plain ? Model() : stretched(model, factor);
   const Model& recovered = is_plain ? model : stretched_model;
   Segments segments = build_segments(recovered);
   segments.most_steiner = std::min(segments.most_steiner, most_steiner);
   std::vector<Subface> subfaces;
-  BoundaryGrid grid;
+  grid = {};
   report = {};
-  grid.complex = recover_boundary(recovered, segments, subfaces, report, context);
+  recover_boundary(recovered, segments, grid.complex, subfaces, report, context);
   if (!is_plain) undo_stretch(grid.complex, model, segments, factor);
   const auto facts = colour_regions(grid.complex, subfaces, model, is_far_field, context);
   const std::vector<bool> keep = choose_regions(grid.complex, facts, domain);
@@ -250,7 +252,6 @@ BoundaryGrid try_boundary(const Model& model, const std::array<double, 3>& facto
   if (thin_out(grid.complex, context) > 0) EdgeFlips(grid.complex, none).restore_delaunay(context);
   if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
   warn_of_split(grid, report, context);
-  return grid;
 }
 
 }  // namespace
@@ -262,16 +263,23 @@ BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& do
   const StageTimer timer(context, "recover");
   const std::array<double, 3> plain{1, 1, 1}, factor = stretch_of(model.bounding_box());
   constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
-  if (factor == plain) return try_boundary(model, plain, kNoBound, domain, is_far_field, report, context);
   const std::size_t few = model.triangles.size() + 100;
-  for (const auto& [how, most] : {std::pair{plain, few}, {factor, kNoBound}}) {
-    try {
-      return try_boundary(model, how, most, domain, is_far_field, report, context);
-    } catch (const MeshingError&) {
-      // the next way may do
+  BoundaryGrid grid;
+  if (factor != plain)
+    for (const auto& [how, most] : {std::pair{plain, few}, {factor, kNoBound}}) {
+      try {
+        try_boundary(model, how, most, domain, is_far_field, grid, report, context);
+        return grid;
+      } catch (const MeshingError&) {
+        // the next way may do
+      }
     }
+  try {
+    try_boundary(model, plain, kNoBound, domain, is_far_field, grid, report, context);
+    return grid;
+  } catch (const MeshingError& e) {
+    throw MeshingError(e.what(), e.places, std::make_shared<const Mesh>(mesh_unfinished(grid.complex, model)));
   }
-  return try_boundary(model, plain, kNoBound, domain, is_far_field, report, context);
 }
 
 }  // namespace delfront

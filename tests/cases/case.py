@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import struct
 import subprocess
@@ -36,8 +37,9 @@ class Case(unittest.TestCase):
         result = self.run_delfront(*arguments, **options)
         shown = f"\n$ delfront {' '.join(map(str, arguments))}\n{result.stdout}{result.stderr}"
         self.assertEqual(result.returncode, code, shown)
+        said = result.stdout + unbroken(result.stderr)
         for text in [says] if isinstance(says, str) else says:
-            self.assertIn(text, result.stdout + result.stderr, shown)
+            self.assertIn(text, said, shown)
         if code in (2, 3, 4, 6, 7, 130):
             self.assertIn("delfront: error: ", result.stderr, shown)
         return result
@@ -54,6 +56,11 @@ class Case(unittest.TestCase):
 
     def report(self, name):
         return json.loads((self.folder / name).read_text())
+
+
+def unbroken(text):
+    """Messages as they were before the terminal broke them into lines."""
+    return re.sub(r"\n +", " ", text)
 
 
 def box_triangles(low=(0, 0, 0), high=(1, 1, 1), inside_out=False):

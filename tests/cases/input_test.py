@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Bad input is refused with what and where (exit 3); odd but valid input is gridded."""
+import re
 import struct
 import unittest
 
@@ -66,6 +67,28 @@ class BadInput(case.Case):
         self.write("open.stl", case.stl_ascii(case.box_triangles()[:-1]))
         self.expect_refused("open.stl", says=["open_edges", "out_defects.vtp"], defects=True)
 
+    def test_defects_are_drawn_as_edges_and_triangles(self):
+        self.write("open.stl", case.stl_ascii(case.box_triangles()[:-1]))
+        self.expect(3, "check", "open.stl", "--defects", "open.vtp")
+        self.assertIn('NumberOfLines="3"', (self.folder / "open.vtp").read_text(errors="replace"))
+        crossing = case.box_triangles() + case.box_triangles((0.5, 0.4, 0.3), (1.5, 1.4, 1.3))
+        self.write("cross.stl", case.stl_ascii(crossing))
+        self.expect(3, "mesh", "cross.stl", "-o", "cross.vtu")
+        drawn = re.search(r'NumberOfPolys="(\d+)"', (self.folder / "cross_defects.vtp").read_text(errors="replace"))
+        self.assertGreater(int(drawn[1]), 6)
+        self.assertLessEqual(int(drawn[1]), len(crossing))
+
+    def test_defects_of_an_earlier_run_do_not_stay_beside_a_good_grid(self):
+        self.write("body.stl", case.stl_ascii(case.box_triangles()[:-1]))
+        self.expect(3, "mesh", "body.stl", "-o", "out.vtu")
+        self.assertIn("out_defects.vtp", self.files())
+        self.write("body.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(0, "mesh", "body.stl", "-o", "out.vtu")
+        self.assertEqual(self.files(), ["body.stl", "out.vtu"])
+        self.write("out_defects.vtp", "mine, not yours")
+        self.expect(0, "mesh", "body.stl", "-o", "out.vtu")
+        self.assertEqual((self.folder / "out_defects.vtp").read_text(), "mine, not yours")
+
     def test_boxes_that_cross(self):
         crossing = case.box_triangles() + case.box_triangles((0.5, 0.4, 0.3), (1.5, 1.4, 1.3))
         self.write("cross.stl", case.stl_ascii(crossing))
@@ -126,6 +149,13 @@ class OddInput(case.Case):
 
     def test_far_from_the_origin(self):
         self.grid(case.box_triangles((1e6, 1e6, 1e6), (1e6 + 1, 1e6 + 1, 1e6 + 1)), 1)
+
+    def test_a_grid_in_place_of_a_surface_is_said(self):
+        self.write("box.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(0, "mesh", "box.stl", "-o", "box.vtu")
+        self.expect(0, "mesh", "box.vtu", "-o", "again.vtu",
+                    says="box.vtu is a grid of 6 cells: they are not used, its 12 stored faces are gridded anew")
+        self.assertNotIn("grid of", self.expect(0, "mesh", "box.stl", "-o", "again.vtu").stderr)
 
     def test_tiny(self):
         self.grid(case.box_triangles((0, 0, 0), (1e-6, 1e-6, 1e-6)), 1e-18)

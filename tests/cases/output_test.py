@@ -79,7 +79,7 @@ class Outputs(case.Case):
         self.expect(0, "mesh", "box.stl", *[x for name in names for x in ("-o", name)], "--report", "r.json")
         self.assertEqual(self.report("r.json")["files_written"], names)
         volume = self.report("r.json")["quality"]["volume"]
-        for name in names[:-1]:
+        for name in names:
             with self.subTest(name):
                 self.expect(0, "check", name, "--json", "check.json")
                 self.assertAlmostEqual(self.report("check.json")["quality"]["volume"], volume, delta=1e-12)
@@ -105,6 +105,13 @@ class Outputs(case.Case):
         self.expect(5, "mesh", "box.stl", "-o", "box.vtu", "--require", "min_dihedral > 89", "--report", "r.json",
                     says="min_dihedral")
         self.assertEqual(self.report("r.json")["exit_code"], 5)
+        self.assertEqual(self.report("r.json")["defects_file"], "box_defects.vtp")
+        shown = (self.folder / "box_defects.vtp").read_text(errors="replace")
+        self.assertIn("kind:gate_min_dihedral", shown)
+        self.assertIn('NumberOfVerts="6"', shown)
+        self.assertIn('NumberOfPolys="24"', shown)  # the faces of six cells
+        self.expect(5, "check", "box.vtu", "--require", "min_dihedral > 89", "--defects", "check.vtp")
+        self.assertIn("kind:gate_min_dihedral", (self.folder / "check.vtp").read_text(errors="replace"))
         self.expect(0, "check", "box.vtu", "--require", "min_dihedral > 1")
         self.expect(5, "check", "box.vtu", "--require", "min_dihedral > 89")
 
@@ -123,8 +130,30 @@ class Outputs(case.Case):
         self.write("ball.stl", case.stl_binary(case.sphere_triangles(4)))
         for limit in (["--max-cells", "100"], ["--time-limit", "0.001"], ["--memory-limit", "1MB"]):
             with self.subTest(limit):
-                self.expect(6, "mesh", "ball.stl", "-o", "ball.vtu", *limit, says="limit")
+                self.expect(6, "mesh", "ball.stl", "-o", "ball.vtu", *limit,
+                            says=["limit of", limit[0], "--hmax", "nothing was written"])
         self.assertEqual(self.files(), ["ball.stl", "box.stl"])
+
+    def test_what_a_format_loses_is_a_warning(self):
+        self.expect(0, "mesh", "box.stl", "-o", "box.vtu", "--set", "boundaries.body.kind=inlet")
+        for name in ("box.su2", "box.msh", "box.obj", "foam/"):
+            with self.subTest(name):
+                said = self.expect(0, "convert", "box.vtu", name).stderr
+                self.assertIn("warning: ", said)
+                self.assertIn("the boundary kind of 1 group is left out (inlet)", case.unbroken(said))
+        self.assertEqual(self.expect(0, "convert", "box.vtu", "box.mesh").stderr, "")
+        self.expect(0, "info", "box.mesh", says="body (12, inlet)")
+
+    def test_a_case_is_not_written_over_itself(self):
+        self.expect(0, "mesh", "box.stl", "-o", "foam/")
+        self.expect(2, "mesh", "foam", "-o", "foam/", says="written over")
+        self.expect(2, "convert", "foam/", "foam/", says="overwritten")
+        self.expect(0, "info", "foam", says="body (12, patch)")
+
+    def test_progress_does_not_look_like_a_failure(self):
+        said = self.expect(0, "mesh", "box.stl", "-o", "box.vtu", "--progress", "bar").stderr
+        self.assertIn("1 file", said)
+        self.assertNotIn("0 of", said)
 
     def test_far_field(self):
         self.expect(0, "mesh", "box.stl", "-o", "out.vtu", "--farfield", "box:3c", "--report", "r.json")

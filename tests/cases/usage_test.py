@@ -10,7 +10,7 @@ class Help(case.Case):
     def test_help_shows_commands_examples_formats_and_exit_codes(self):
         self.expect(0, "--help", says=["delfront mesh", ".stl", ".vtu", "OpenFOAM", "Exit codes"])
         self.expect(0, "mesh", "--help", says=["Examples:", "--farfield", "the kind wall", "--hmax,--clmax", "--set",
-                                               "LENGTH:"])
+                                               "LENGTH:", "Model units are those of the coordinates"])
         for command in ("check", "info", "convert"):
             self.expect(0, command, "--help", says="xample")
 
@@ -105,6 +105,39 @@ class JobFiles(case.Case):
         self.expect(2, "mesh", "case.toml", says=["case.toml:3: size.hmax: expected a length", "got a list of 2"])
         self.write("case.json", '{\n "size": {\n  "growth": "1.2"\n }\n}')
         self.expect(2, "mesh", "case.json", says=["case.json:3: size.growth: expected a number over 1"])
+
+    def test_what_shows_only_later_names_key_and_line_too(self):
+        self.write("a.stl", case.stl_ascii(case.box_triangles()))
+        lines = {"files": "'a.vtu'", "hmin": "0.1", "hmax": "1", "require": "'min_dihedral > 1'", "kind": "'wall'"}
+
+        def job(**changed):
+            value = {**lines, **changed}
+            return self.write("case.toml", f"[input]\nfiles = ['a.stl']\n[output]\nfiles = [\n  {value['files']},\n]\n"
+                              f"require = {value['require']}\n[size]\nhmin = {value['hmin']}\nhmax = {value['hmax']}\n"
+                              f"[boundaries.a]\nselect = 'bo*'\nkind = {value['kind']}\n")
+
+        self.expect(0, "mesh", job())
+        for changed, says in (({"require": "'mindihedral > 1'"}, "case.toml:7: output.require: gate 'mindihedral'"),
+                              ({"require": "'min_dihedral'"}, "case.toml:7: output.require: gate 'min_dihedral'"),
+                              ({"files": "'a.xyz'"}, "case.toml:5: output.files[0]: a.xyz: unknown type"),
+                              ({"files": "'no/a.vtu'"}, "case.toml:5: cannot write no/a.vtu"),
+                              ({"files": "'a.stl'"}, "case.toml:5: output.files[0]: a.stl: stl holds surfaces only"),
+                              ({"hmin": "2"}, "case.toml:9: size.hmin: 2 is above size.hmax, which is 1 (case.toml:10)"),
+                              ({"hmax": "'5 mm'"}, "case.toml:10: size.hmax: length '5 mm' needs the unit")):
+            with self.subTest(says):
+                self.expect(7 if "no/" in str(changed) else 2, "mesh", job(**changed), says=says)
+        self.expect(2, "mesh", job(), "--hmin", "3", says="--hmin: 3 is above size.hmax, which is 1 (case.toml:10)")
+        text = (self.folder / "case.toml").read_text()
+        self.write("case.toml", text.replace("bo*", "nobody"))
+        self.expect(2, "mesh", "case.toml", says="case.toml:12: boundaries.a: no patch is called 'nobody'")
+
+    def test_long_messages_are_broken_into_lines(self):
+        self.write("case.toml", "[size]\nhmax = true\n")
+        for words in (["case.toml"], ["a.stl", "-o", "a.xyz"], ["a.stl", "-o", "a.vtu", "--require", "no > 1"]):
+            said = self.expect(2, "mesh", *words).stderr.splitlines()
+            self.assertGreater(len(said), 1)
+            self.assertLessEqual(max(map(len, said)), 100)
+            self.assertTrue(all(line.startswith("  ") for line in said[1:]))
 
     def test_not_toml_names_the_line(self):
         self.write("case.toml", "[size]\nhmax = \n")

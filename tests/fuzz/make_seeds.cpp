@@ -64,7 +64,7 @@ Mesh general_cells() {
 void write_all(const Mesh& mesh, const std::string& root, const std::string& stem) {
   Context context;
   for (const FormatInfo& format : formats()) {
-    if (!format.can_write || !format.can_read) continue;
+    if (!format.can_write || !format.can_read || format.name == "openfoam") continue;
     const std::string folder = root + "/" + format.name;
     std::filesystem::create_directories(folder);
     for (const WriteOptions& options : {WriteOptions{.binary = true, .version = "", .compress = false},
@@ -78,6 +78,34 @@ void write_all(const Mesh& mesh, const std::string& root, const std::string& ste
       }
     }
   }
+}
+
+/// One case in one file, as fuzz_read_openfoam takes it apart.
+void write_case(const Mesh& mesh, const std::string& root, const std::string& stem) {
+  const std::string folder = root + "/openfoam", parts = root + "/case_in_parts/";
+  std::filesystem::create_directories(folder);
+  Context context;
+  write_mesh(mesh, parts, context);
+  std::ofstream whole(folder + "/" + stem, std::ios::binary);
+  for (const char* name : {"points", "faces", "owner", "neighbour", "boundary", "cellZones", "faceZones"}) {
+    std::ifstream part(parts + "constant/polyMesh/" + name, std::ios::binary);
+    if (part) whole << part.rdbuf();
+    whole << '\f';
+  }
+  std::filesystem::remove_all(parts);
+}
+
+/// Two tetrahedra of two regions on one face, which is a group.
+Mesh two_regions() {
+  Mesh mesh;
+  for (std::size_t i = 0; i < 4; ++i) mesh.points.push_back({double(i == 1), double(i == 2), double(i == 3)});
+  mesh.points.push_back({1, 1, 1});
+  const GroupId one = mesh.add_group(3, "one"), other = mesh.add_group(3, "other");
+  add(mesh, CellType::tetrahedron, {0, 1, 2, 3}, one);
+  add(mesh, CellType::tetrahedron, {1, 2, 3, 4}, other);
+  add(mesh, CellType::triangle, {1, 2, 3}, mesh.add_group(2, "between", "interface"));
+  add(mesh, CellType::triangle, {0, 2, 1}, mesh.add_group(2, "low", "wall"));
+  return mesh;
 }
 
 void write_text(const std::string& root, const std::string& format, const std::string& text) {
@@ -97,6 +125,8 @@ int main(int argc, char** argv) {
   write_all(plane(), root, "plane");
   write_all(surface(), root, "surface");
   write_all(general_cells(), root, "general");
+  write_case(general_cells(), root, "polyhedron");
+  write_case(two_regions(), root, "two_regions");
   write_text(root, "obj", "o a\nusemtl b\nv 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1/1 2//2 -1/3/4\nf 1 2 \\\n3\n");
   write_text(root, "poly",
              "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n1 1\n2 0 5\n4 1 2 3 4\n2 1 3\n1\n1 0 0 0\n0\n");

@@ -36,7 +36,8 @@ TEST(BadInput, unknown_extension_lists_the_known_and_the_nearest) {
   EXPECT_THROW(write_mesh(cube_surface(), "a.poly", context), UsageError);
   EXPECT_EQ(format_of("X.STL").name, "stl");
   EXPECT_EQ(format_of("case/", "", true).name, "openfoam");
-  EXPECT_THROW(format_of("case/"), UsageError);
+  EXPECT_EQ(format_of("case/").name, "openfoam");
+  EXPECT_EQ(format_of(scratch_folder("a.stl")).name, "openfoam") << "a folder, whatever it is called";
 }
 
 TEST(BadInput, stl_header_with_four_billion_facets) {
@@ -99,6 +100,19 @@ TEST(BadInput, off_and_ply_indices_and_truncation) {
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
   expect_mentions(message_of_reading<InputError>(write_text("a.ply", head + "3 0 1 7\n")), {"face 0", "vertex 7"});
   expect_mentions(message_of_reading<InputError>(write_text("a.ply", head + "3 0 1")), {"truncated"});
+}
+
+TEST(BadInput, poly_points_are_numbered_one_after_the_other_from_0_or_1) {
+  for (const char* dimension : {"2", "3"}) {
+    const auto refused = [&](const char* a, const char* b) {
+      const std::string text =
+          std::string("2 ") + dimension + " 0 0\n" + a + " 0 0 0\n" + b + " 1 0 0\n1 0\n1 1 2\n0\n0\n";
+      return message_of_reading<InputError>(write_text("a.poly", text));
+    };
+    expect_mentions(refused("1", "3"), {"line 3", "one after the other"});
+    expect_mentions(refused("2", "3"), {"neither 0 nor 1"});
+    expect_mentions(refused("-9223372036854775807", "9223372036854775807"), {"one after the other"});
+  }
 }
 
 TEST(BadInput, cut_files_of_every_writer_give_an_error_or_less_never_a_crash) {

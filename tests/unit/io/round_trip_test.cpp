@@ -111,8 +111,9 @@ TEST(RoundTrip, su2_says_what_it_cannot_hold) {
   EXPECT_TRUE(got.find_group(2, "left_wall").is_valid());
   EXPECT_FALSE(got.find_group(2, "between").is_valid());
   EXPECT_EQ(got.num_cells(CellType::triangle), mesh.num_cells(CellType::triangle) - 2);
-  ASSERT_EQ(notes.size(), 3u);  // the name, the inner faces, the regions
-  expect_mentions(notes[0], {"left wall", "left_wall"});
+  ASSERT_EQ(notes.size(), 4u);  // the kinds, the name, the inner faces, the regions
+  expect_mentions(notes[0], {"SU2", "2 groups", "interface, wall", "VTU"});
+  expect_mentions(notes[1], {"left wall", "left_wall"});
 }
 
 TEST(RoundTrip, obj_and_ply_keep_faces_and_patches) {
@@ -204,7 +205,23 @@ TEST(RoundTrip, volume_grids_written_as_surfaces_keep_only_the_points_of_faces) 
   const Mesh got = round_trip(mesh, "a.obj", {}, &notes);
   EXPECT_EQ(got.points.size(), mesh.points.size() - 1);
   EXPECT_EQ(got.num_cells(CellType::triangle), mesh.num_cells(CellType::triangle));
-  EXPECT_EQ(notes.size(), 1u);
+  ASSERT_EQ(notes.size(), 2u);
+  expect_mentions(notes[0], {"12 volume cells"});
+  expect_mentions(notes[1], {"the boundary kinds of 2 groups are left out"});
+}
+
+TEST(RoundTrip, kinds_that_a_format_loses_are_said) {
+  Mesh mesh = two_boxes();
+  mesh.groups[mesh.find_group(2, "rest")].kind = "farfield";
+  const auto losses = [&](const std::string& name) {
+    Context context;
+    std::size_t n = 0;
+    for (const std::string& note : write_mesh(mesh, (scratch_folder("io_kinds") / name).string(), context))
+      n += note.find("left out (") != std::string::npos && note.find("farfield") != std::string::npos;
+    return n;
+  };
+  for (const char* name : {"a.su2", "a.msh", "a.stl", "a.obj", "a.ply", "a.off", "case/"}) EXPECT_EQ(losses(name), 1u);
+  for (const char* name : {"a.vtu", "a.vtp", "a.mesh"}) EXPECT_EQ(losses(name), 0u) << name;
 }
 
 }  // namespace

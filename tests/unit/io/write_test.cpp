@@ -195,28 +195,36 @@ TEST(OpenFoam, a_baffle_becomes_two_patches_and_face_normals_leave_the_owner) {
   EXPECT_FALSE(fs::exists(folder / "case/constant/polyMesh/faceZones"));
 }
 
-TEST(Defects, places_become_vertices_and_named_triangles_faces) {
-  const Mesh cube = cube_surface();
-  const std::vector<Finding> findings = {
-      {"self_intersection", Severity::error, 1, "", "", {{{0.25, 0.5, 0.75}, {1, 2}}}},
-      {"open_edges", Severity::warning, 2, "", "", {{{1, 2, 3}, {7}}, {{4, 5, 6}, {}}}}};
+TEST(Defects, places_become_vertices_edges_lines_and_faces_polygons) {
+  const Point a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0.5}, d{1, 1, 1};
+  Finding crossing{"self_intersection", Severity::error, 1, "", "", {{{0.25, 0.5, 0.75}, {1, 2}}}};
+  crossing.outlines = {{2, {a, b, c}}, {1, {b, c, d}}, {2, {a, b, c}}};  // one triangle in two pairs is drawn once
+  Finding open{"open_edges", Severity::warning, 2, "", "", {{{1, 2, 3}, {7}}, {{4, 5, 6}, {}}}};
+  open.outlines = {{7, {a, b}}, {7, {b, d}}};
   Context context;
   const std::string path = (scratch_folder("io_defects") / "d.vtp").string();
-  write_defects(findings, path, &cube, context);
+  write_defects({crossing, open}, path, context);
   const Mesh got = read_mesh(path, context);
   EXPECT_EQ(got.num_cells(CellType::vertex), 3u);
-  EXPECT_EQ(got.num_cells(CellType::triangle), 2u);
-  EXPECT_EQ(got.points[VertexId(0)], (Point{0.25, 0.5, 0.75}));
-  EXPECT_EQ(got.points[VertexId(2)], (Point{4, 5, 6}));
-  for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_EQ(got.points[VertexId(3 + k)], cube.points[cube.find_block(CellType::triangle)->vertices[3 + k]]);
-  std::map<std::string, std::vector<double>> on_points;
+  ASSERT_EQ(got.num_cells(CellType::line), 2u);
+  ASSERT_EQ(got.num_cells(CellType::triangle), 2u);
+  const auto corners = [&](CellType type, std::size_t cell) {
+    std::vector<Point> points;
+    for (VertexId v : (*got.find_block(type))[cell]) points.push_back(got.points[v]);
+    return points;
+  };
+  EXPECT_EQ(corners(CellType::vertex, 0), (std::vector<Point>{{0.25, 0.5, 0.75}}));
+  EXPECT_EQ(corners(CellType::triangle, 0), (std::vector<Point>{b, c, d}));
+  EXPECT_EQ(corners(CellType::triangle, 1), (std::vector<Point>{a, b, c}));
+  EXPECT_EQ(corners(CellType::line, 1), (std::vector<Point>{b, d}));
+  std::map<std::pair<std::string, CellType>, std::vector<double>> on_cells;
   for (const Field& field : got.fields)
-    if (field.on == Field::On::vertices) on_points[field.name] = field.values;
-  EXPECT_EQ(on_points["first_id"], (std::vector<double>{1, 7, -1, 1, 1, 1, 2, 2, 2}));
-  EXPECT_EQ(on_points["severity"], (std::vector<double>{2, 1, 1, 2, 2, 2, 2, 2, 2}));
-  EXPECT_EQ(on_points["finding"], (std::vector<double>{0, 1, 1, 0, 0, 0, 0, 0, 0}));
-  write_defects({}, path, nullptr, context);
+    if (field.on == Field::On::cells) on_cells[{field.name, field.block}] = field.values;
+  EXPECT_EQ((on_cells[{"first_id", CellType::vertex}]), (std::vector<double>{1, 7, -1}));
+  EXPECT_EQ((on_cells[{"first_id", CellType::triangle}]), (std::vector<double>{1, 2}));
+  EXPECT_EQ((on_cells[{"severity", CellType::line}]), (std::vector<double>{1, 1}));
+  EXPECT_EQ((on_cells[{"finding", CellType::triangle}]), (std::vector<double>{0, 0}));
+  write_defects({}, path, context);
   EXPECT_NE(contents(path).find("NumberOfVerts=\"0\""), std::string::npos);
 }
 

@@ -62,6 +62,20 @@ TEST_F(RunJob, a_failed_gate_leaves_the_grid) {
   EXPECT_EQ(report()["exit_code"], 5);
 }
 
+TEST(ReportJson, says_why_points_were_left_on_the_surface) {
+  JobResult result;
+  result.report.recovery.steiner_left = 2;
+  result.report.recovery.left = {{{1, 2, 3}, {7}}, {{4, 5, 6}, {8}}};
+  result.report.recovery.left_why = {"a sheet ends here", "too thin"};
+  const Options options;
+  const auto json = nlohmann::json::parse(report_json(result, options, ""));
+  const auto& left = json["recovery"]["left"];
+  ASSERT_EQ(left.size(), 2u);
+  EXPECT_EQ(left[0]["why"], "a sheet ends here");
+  EXPECT_EQ(left[1]["why"], "too thin");
+  EXPECT_EQ(left[1]["at"], (nlohmann::json{4.0, 5.0, 6.0}));
+}
+
 TEST_F(RunJob, an_open_surface_is_refused_with_its_places) {
   Mesh open = fixtures::cube_surface();
   CellBlock& triangles = open.block(CellType::triangle);

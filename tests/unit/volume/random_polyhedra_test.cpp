@@ -128,42 +128,75 @@ Body random_tets(unsigned seed) {
   return body;
 }
 
+using Cell = std::array<int, 3>;
+
+/// Cells of an n^3 lattice, n^3 numbers; 0 outside.
+class Lattice {
+ public:
+  Lattice(int n, std::vector<unsigned> numbers) : n_(n), numbers_(std::move(numbers)) {}
+  unsigned operator()(Cell c) const {
+    const bool is_in = std::min({c[0], c[1], c[2]}) >= 0 && std::max({c[0], c[1], c[2]}) < n_;
+    return is_in ? numbers_[static_cast<std::size_t>((c[2] * n_ + c[1]) * n_ + c[0])] : 0u;
+  }
+  /// `visit(number on this side, number beyond, corners)` for every side; corners run round the axis that it crosses.
+  template <class Visit>
+  void for_each_side(Visit&& visit) const {
+    for (int i = -1; i < n_; ++i)
+      for (int j = -1; j < n_; ++j)
+        for (int k = -1; k < n_; ++k)
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            Cell next{i, j, k};
+            ++next[axis];
+            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+            Cell b = next, c = next, d = next;
+            ++b[u], ++c[u], ++c[v], ++d[v];
+            visit((*this)({i, j, k}), (*this)(next), std::array{next, b, c, d});
+          }
+  }
+
+ private:
+  int n_;
+  std::vector<unsigned> numbers_;
+};
+
+/// Lattice sides as pairs of triangles, their corners mapped and numbered as they come.
+class SideCollector {
+ public:
+  explicit SideCollector(const RandomMap& map) : map_(map) {}
+  /// @param first  which corner the diagonal starts from, 0 or 1
+  void add(const std::array<Cell, 4>& side, bool is_reversed, std::size_t first) {
+    std::vector<std::size_t> q;
+    for (const Cell& corner : side) q.push_back(vertex(corner));
+    if (is_reversed) std::reverse(q.begin(), q.end());
+    surface.faces.push_back({q[first], q[first + 1], q[first + 2]});
+    surface.faces.push_back({q[first], q[first + 2], q[(first + 3) % 4]});
+  }
+
+  Facets surface;
+
+ private:
+  std::size_t vertex(Cell at) {
+    const auto [it, is_new] = index_.try_emplace(at, surface.points.size());
+    if (is_new) surface.points.push_back(map_({double(at[0]), double(at[1]), double(at[2])}));
+    return it->second;
+  }
+
+  RandomMap map_;
+  std::map<Cell, std::size_t> index_;
+};
+
 /// A random set of cells of an n^3 lattice, 2 <= n < 2 + num_sizes, with random diagonals, mapped.
 Body random_cells(unsigned seed, unsigned num_sizes) {
   std::mt19937 random(seed);
   const int n = 2 + static_cast<int>(random() % num_sizes);
-  std::vector<bool> is_full;
+  std::vector<unsigned> is_full;
   for (int i = 0; i < n * n * n; ++i) is_full.push_back(random() % 3 != 0);
-  is_full[0] = true;
-  auto full = [&](int i, int j, int k) {
-    return std::min({i, j, k}) >= 0 && std::max({i, j, k}) < n &&
-           is_full[static_cast<std::size_t>((k * n + j) * n + i)];
-  };
-  const RandomMap map(random);
-  std::map<std::array<int, 3>, std::size_t> index;
-  Body body;
-  auto vertex = [&](std::array<int, 3> at) {
-    const auto [it, is_new] = index.try_emplace(at, body.surface.points.size());
-    if (is_new) body.surface.points.push_back(map({double(at[0]), double(at[1]), double(at[2])}));
-    return it->second;
-  };
-  for (int i = -1; i < n; ++i)
-    for (int j = -1; j < n; ++j)
-      for (int k = -1; k < n; ++k)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          std::array<int, 3> next{i, j, k};
-          ++next[axis];
-          const bool here = full(i, j, k), there = full(next[0], next[1], next[2]);
-          if (here == there) continue;
-          const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-          std::array<int, 3> b = next, c = next, d = next;
-          ++b[u], ++c[u], ++c[v], ++d[v];
-          std::vector<std::size_t> q = {vertex(next), vertex(b), vertex(c), vertex(d)};  // normal along the axis
-          if (there) std::reverse(q.begin(), q.end());
-          const std::size_t turn = random() % 2;
-          body.surface.faces.push_back({q[turn], q[turn + 1], q[turn + 2]});
-          body.surface.faces.push_back({q[turn], q[turn + 2], q[(turn + 3) % 4]});
-        }
+  is_full[0] = 1;
+  SideCollector sides{RandomMap(random)};
+  Lattice(n, is_full).for_each_side([&](unsigned here, unsigned there, const std::array<Cell, 4>& side) {
+    if (here != there) sides.add(side, there != 0, random() % 2);
+  });
+  Body body{std::move(sides.surface), 0};
   body.volume = body.surface.volume();
   return body;
 }
@@ -176,35 +209,13 @@ Facets random_rooms(unsigned seed) {
   std::vector<unsigned> material;
   for (int i = 0; i < n * n * n; ++i) material.push_back(random() % 4);
   material[0] = 1;
-  auto of = [&](std::array<int, 3> c) {
-    const bool is_in = std::min({c[0], c[1], c[2]}) >= 0 && std::max({c[0], c[1], c[2]}) < n;
-    return is_in ? material[static_cast<std::size_t>((c[2] * n + c[1]) * n + c[0])] : 0u;
-  };
-  const RandomMap map(random);
-  std::map<std::array<int, 3>, std::size_t> index;
-  Facets rooms;
-  auto vertex = [&](std::array<int, 3> at) {
-    const auto [it, is_new] = index.try_emplace(at, rooms.points.size());
-    if (is_new) rooms.points.push_back(map({double(at[0]), double(at[1]), double(at[2])}));
-    return it->second;
-  };
-  for (int i = -1; i < n; ++i)
-    for (int j = -1; j < n; ++j)
-      for (int k = -1; k < n; ++k)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          std::array<int, 3> next{i, j, k};
-          ++next[axis];
-          const unsigned here = of({i, j, k}), there = of(next);
-          if (here == there && (here == 0 || random() % 8 != 0)) continue;
-          const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3, turn = random() % 2;
-          std::array<int, 3> b = next, c = next, d = next;
-          ++b[u], ++c[u], ++c[v], ++d[v];
-          std::vector<std::size_t> q = {vertex(next), vertex(b), vertex(c), vertex(d)};
-          if (random() % 2 == 0) std::reverse(q.begin(), q.end());
-          rooms.faces.push_back({q[turn], q[turn + 1], q[turn + 2]});
-          rooms.faces.push_back({q[turn], q[turn + 2], q[(turn + 3) % 4]});
-        }
-  return rooms;
+  SideCollector sides{RandomMap(random)};
+  Lattice(n, material).for_each_side([&](unsigned here, unsigned there, const std::array<Cell, 4>& side) {
+    if (here == there && (here == 0 || random() % 8 != 0)) return;
+    const std::size_t first = random() % 2;
+    sides.add(side, random() % 2 == 0, first);
+  });
+  return std::move(sides.surface);
 }
 
 void expect_recovered(const Body& body, const char* kind, unsigned seed) {

@@ -52,6 +52,30 @@ TEST(RecoverBoundary, model_vertices_keep_their_numbers_and_places) {
     EXPECT_EQ(r.grid.complex.on_boundary[v], 0) << "an inner point that may not move";
 }
 
+TEST(RecoverBoundary, a_failure_brings_the_grid_as_far_as_it_came) {
+  Facets touching = box_facets({0, 0, 0}, {1, 1, 1});  // a corner on an edge: no grid has both
+  touching.add(fixtures::tetrahedron_facets({0.5, 0, 0}, {0.2, -1, -1}, {0.8, -1, -1}, {0.5, -1, -2}));
+  const Model model = fixtures::to_model(touching);
+  RecoveryReport report;
+  Context context;
+  try {
+    tetrahedralize_boundary(model, {}, std::vector<bool>(model.patches.size(), false), report, context);
+    FAIL() << "recovered what cannot be";
+  } catch (const MeshingError& e) {
+    EXPECT_FALSE(e.places.empty());
+    ASSERT_TRUE(e.partial);
+    const Mesh& mesh = *e.partial;
+    EXPECT_GT(mesh.num_cells(CellType::tetrahedron), 6u);
+    ASSERT_EQ(mesh.num_cells(CellType::triangle), model.triangles.size());
+    const std::vector<GroupId>& groups = mesh.find_block(CellType::triangle)->group;
+    const auto lacking = std::count(groups.begin(), groups.end(), mesh.find_group(2, "missing_or_divided"));
+    EXPECT_GE(lacking, 2) << "the triangles at the edge";
+    EXPECT_LT(lacking, std::ptrdiff_t(groups.size()));
+    for (const CellBlock& block : mesh.blocks)
+      for (const VertexId v : block.vertices) ASSERT_LT(v.index(), mesh.points.size());
+  }
+}
+
 TEST(RecoverBoundary, an_inside_out_surface_is_gridded_all_the_same) {
   Facets box = box_facets({0, 0, 0}, {2, 1, 1});
   box.turn();

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a job is said before any work, with the key and the place where it was set.
+#include "pipeline/job_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "delfront/errors.hpp"
+#include "delfront/grid_check.hpp"
+#include "delfront/io.hpp"
+#include "pipeline/option_table.hpp"
+#include "pipeline/quantities.hpp"
+#include "pipeline/run.hpp"
+
+namespace delfront {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The gates' measures are those of volume cells, or of triangles.
+bool are_planar_gates(const std::string& gates) {
+  Mesh cell;
+  cell.dimension = 2;
+  cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  cell.block(CellType::triangle).vertices = {VertexId(0), VertexId(1), VertexId(2)};
+  cell.block(CellType::triangle).group = {cell.add_group(2, "cell")};
+  Context quiet;
+  try {
+    failed_gates(measure_quality(cell, quiet), gates);
+    return true;
+  } catch (const UsageError&) {
+    return false;
+  }
+}
+
+/// Malformed gates and unknown measures are refused before the work: tried on grids of one cell.
+void try_gates(const std::string& gates) {
+  if (gates.empty() || are_planar_gates(gates)) return;
+  Mesh cell;
+  cell.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  cell.block(CellType::tetrahedron).vertices = {VertexId(0), VertexId(1), VertexId(2), VertexId(3)};
+  cell.block(CellType::tetrahedron).group = {cell.add_group(3, "cell")};
+  Context quiet;
+  failed_gates(measure_quality(cell, quiet), gates);
+}
+
+/// Runs `check`; what it says against the value of `key` gets the place where that was set.
+template <class Check>
+void check_key(const Options& options, const std::string& key, const Check& check) {
+  try {
+    check();
+  } catch (const UsageError& e) {
+    throw usage_error(options, key, e.what());
+  } catch (const IoError& e) {
+    throw IoError(place_of_key(options, key) + e.what());
+  }
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  const bool is_device = fs::exists(a, ignored) && !fs::is_regular_file(a, ignored) && !fs::is_directory(a, ignored);
+  if (is_device) return false;  // such as /dev/null
+  fs::path whole_a = fs::weakly_canonical(a, ignored), whole_b = fs::weakly_canonical(b, ignored);
+  for (fs::path* whole : {&whole_a, &whole_b})
+    if (!whole->has_filename()) *whole = whole->parent_path();  // a case folder's name ends in '/' only if it is new
+  return !whole_a.empty() && whole_a == whole_b;
+}
+
+/// No file may be written over an input or over another output of the same run.
+void check_files_differ(const Options& options) {
+  std::vector<std::string> taken = options.input.files;
+  const auto add = [&](const std::string& path, const std::string& key) {
+    if (path.empty()) return;
+    if (const std::string* other = find_same_file(path, taken))
+      throw usage_error(
+          options, key,
+          fmt::format("{} would be written over {}, a file of the same run; give it another name", path, *other));
+    taken.push_back(path);
+  };
+  if (writes_grid(options))
+    for (std::size_t i = 0; i < options.output.files.size(); ++i)
+      add(options.output.files[i], fmt::format("output.files[{}]", i));
+  add(options.output.report, "output.report");
+  add(options.output.defects, "output.defects");
+}
+
+/// A grid without its cells is never written under the asked name.
+void check_holds_cells(const Options& options, const std::string& path) {
+  if (options.stop_after == "surface" || options.volume.method == "none") return;
+  const std::string& name = format_of(path, options.output.format, true).name;
+  for (const char* surface_only : {"stl", "obj", "ply", "off", "vtp"})
+    if (name == surface_only)
+      throw UsageError(
+          fmt::format("{}: {} holds surfaces only, and the result is a grid of cells; write vtu, msh, mesh, "
+                      "su2 or an OpenFOAM case (or the surface alone: --stop-after surface)",
+                      path, name));
+}
+
+void check_domain(const Options& options) {
+  const EncloseOptions& enclose = options.domain.enclose;
+  if (has_far_field(options) && !enclose.corners && enclose.size.value <= 0)
+    throw UsageError(place_of_key(options, "domain.enclose.shape") +
+                     "domain.enclose.size: the size of the far field is missing, e.g. size = \"20c\"");
+  if (enclose.shape == "sphere" && enclose.corners)
+    throw usage_error(options, "domain.enclose.corners", "a sphere has none; give size, or shape = \"box\"");
+  if (enclose.h && !has_far_field(options))
+    throw usage_error(options, "domain.enclose.h", "there is no far field; add e.g. --farfield box:10c");
+}
+
+void check_files(const Options& options) {
+  for (std::size_t i = 0; i < options.input.files.size(); ++i)
+    check_key(options, fmt::format("input.files[{}]", i), [&] { format_of(options.input.files[i]); });
+  if (writes_grid(options) && !options.output.format.empty())
+    check_key(options, "output.format", [&] { format_of("", options.output.format, true); });
+  for (std::size_t i = 0; writes_grid(options) && i < options.output.files.size(); ++i)
+    check_key(options, fmt::format("output.files[{}]", i), [&] {
+      const std::string& path = options.output.files[i];
+      format_of(path, options.output.format, true);
+      check_holds_cells(options, path);
+      check_writable(path);
+    });
+  for (const auto& [key, path] :
+       {std::pair{"output.report", options.output.report}, {"output.defects", options.output.defects}})
+    if (!path.empty()) check_key(options, key, [&path = path] { check_writable(path); });
+  check_files_differ(options);
+}
+
+}  // namespace
+
+const std::string* find_same_file(const std::string& path, const std::vector<std::string>& others) {
+  const auto found =
+      std::find_if(others.begin(), others.end(), [&](const std::string& other) { return is_same_file(path, other); });
+  return found == others.end() ? nullptr : &*found;
+}
+
+void check_job(const Options& options) {
+  if (options.input.files.empty()) throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
+  if (writes_grid(options) && options.output.files.empty())
+    throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
+  check_domain(options);
+  if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
+    throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
+  check_key(options, "output.require", [&] { try_gates(options.output.require); });
+  check_files(options);
+}
+
+void resolve_lengths(Options& options, const LengthScale& scale) {
+  const auto resolve = [&](const char* key, auto& length) {
+    if (length) check_key(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
+  };
+  resolve("size.hmin", options.size.hmin);
+  resolve("size.hmax", options.size.hmax);
+  resolve("domain.enclose.h", options.domain.enclose.h);
+  EncloseOptions& enclose = options.domain.enclose;
+  if (enclose.size.value > 0)
+    check_key(options, "domain.enclose.size", [&] { enclose.size = {resolve_length(enclose.size, scale), ""}; });
+  if (options.size.hmin && options.size.hmax && options.size.hmin->value > options.size.hmax->value) {
+    const std::string other = place_of_key(options, "size.hmax");
+    throw usage_error(
+        options, "size.hmin",
+        fmt::format("{:g} is above size.hmax, which is {:g}{}", options.size.hmin->value, options.size.hmax->value,
+                    other.empty() ? "" : fmt::format(" ({})", other.substr(0, other.size() - 2))));
+  }
+}
+
+}  // namespace delfront

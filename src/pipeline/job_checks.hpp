@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "delfront/options.hpp"
+
+namespace delfront {
+
+/// @brief What is wrong with the options as a whole, and with the places of the outputs.
+/// @throws UsageError  the key and where it was set
+/// @throws IoError     an output that cannot be written
+void check_job(const Options& options);
+
+/// @brief Lengths in percent, in longest sides or in units become model units, so that nobody after us has to ask.
+/// @throws UsageError  a unit while that of the model is not known, hmin above hmax
+void resolve_lengths(Options& options, const LengthScale& scale);
+
+/// @return the first of `others` that writing `path` would destroy, or nullptr
+const std::string* find_same_file(const std::string& path, const std::vector<std::string>& others);
+
+}  // namespace delfront

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "delfront/context.hpp"
+#include "delfront/findings.hpp"
+#include "delfront/job.hpp"
+#include "delfront/model.hpp"
+
+namespace delfront {
+
+/// @brief A job under way: what goes in, and what its steps have made so far.
+struct Run {
+  Options options;  ///< lengths are resolved to model units on the way
+  Context& context;
+  JobResult& result;
+  std::vector<NamedMesh> inputs;
+  PatchId far_field;                   ///< the patch of domain.enclose, where there is one
+  std::vector<Finding> gate_failures;  ///< of a grid that does not meet output.require
+  Mesh partial;                        ///< what there is of the grid where gridding failed
+};
+
+inline bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }
+
+inline bool writes_grid(const Options& options) {
+  return options.stop_after != "geometry" && options.stop_after != "improve";
+}
+
+}  // namespace delfront

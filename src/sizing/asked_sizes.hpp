@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+
+#include "delfront/options.hpp"
+#include "delfront/size_field.hpp"
+
+namespace delfront {
+
+/// @brief Where no growth is asked for.
+inline constexpr double kDefaultGrowth = 1.2;
+
+/// @return the largest size of any boundary point, 0 without points
+double largest_size(const BoundarySizes& boundary);
+
+/// @brief Sizes from the boundary (S1), as the options ask for them.
+///
+/// Without options.growth it is kDefaultGrowth, and no size exceeds `largest`, or hmin where that is more.
+/// @param boundary  points and sizes; the rest of it is set from the options
+/// @param options   lengths in model units
+/// @param largest   of the boundary as it was given
+std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,
+                                                  Context& context);
+
+}  // namespace delfront
