@@ -152,6 +152,7 @@ SurfaceReport check_surface(const Model& model, Context& context) {
     find_regions(surface, shells, report.findings);
     note_turned_shells(surface, shells, report);
   }
+  find_curve_defects(surface, report.findings, context);
   find_hard_places(surface, is_plc ? &shells : nullptr, report, context);
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

@@ -74,8 +74,17 @@ Json to_json(const SurfaceComponent& c) {
 }
 
 Json to_json(const RecoveryReport& r) {
-  return {{"missing_edges", r.missing_edges}, {"missing_faces", r.missing_faces}, {"steiner_points", r.steiner_points},
-          {"steiner_moved", r.steiner_moved}, {"steiner_left", r.steiner_left},   {"left", to_json(r.left, 1000)}};
+  return {{"missing_edges", r.missing_edges},
+          {"missing_faces", r.missing_faces},
+          {"steiner_points", r.steiner_points},
+          {"steiner_moved", r.steiner_moved},
+          {"steiner_left", r.steiner_left},
+          {"curve_edges", r.curve_edges},
+          {"curve_edges_inside", r.curve_edges_inside},
+          {"curve_edges_split", r.curve_edges_split},
+          {"curve_points_left", r.curve_points_left},
+          {"embedded_points", r.embedded_points},
+          {"left", to_json(r.left, 1000)}};
 }
 
 Json to_json(const KernelCounts& k) {

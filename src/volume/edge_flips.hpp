@@ -2,27 +2,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <unordered_set>
 #include <vector>
 
 #include "delfront/context.hpp"
 #include "tetra/tet_complex.hpp"
-#include "volume/segments.hpp"
 
 namespace delfront {
-
-/// @brief The pieces of the model's edges: what flips and refilled cavities must not lose.
-class RequiredEdges {
- public:
-  explicit RequiredEdges(const Segments& segments);
-  bool has(VertexIndex a, VertexIndex b) const { return edges_.contains(key(a, b)); }
-
- private:
-  static std::uint64_t key(VertexIndex a, VertexIndex b) {
-    return static_cast<std::uint64_t>(a < b ? a : b) << 32 | (a < b ? b : a);
-  }
-  std::unordered_set<std::uint64_t> edges_;
-};
 
 /// @brief Make (a, b) an edge by switching what lies in its way: faces (2-3) and edges, any of which the segment cuts.
 ///
@@ -33,7 +18,7 @@ class RequiredEdges {
 /// @par Source  George, Borouchaki & Saltel (2003); Si (2015), section 4
 class EdgeFlips {
  public:
-  EdgeFlips(TetComplex& complex, const RequiredEdges& required) : c_(complex), required_(required) {}
+  EdgeFlips(TetComplex& complex, const EdgeSet& required) : c_(complex), required_(required) {}
 
   /// @param flat  one a vertex: whether it lies in the flat part of the surface that (a, b) runs through
   bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
@@ -68,7 +53,7 @@ class EdgeFlips {
   void replace(const std::vector<TetIndex>& old_tets);
 
   TetComplex& c_;
-  const RequiredEdges& required_;
+  const EdgeSet& required_;
   std::vector<Obstacle> obstacles_, tried_;
   bool may_add_points_ = false;
   int sideways_ = 0;  ///< switches left that may leave as much in the way as before
