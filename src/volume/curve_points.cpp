@@ -21,7 +21,9 @@ class CurvePointRemoval {
   CurvePointRemoval(TetComplex& complex, VertexIndex s, VertexIndex p, VertexIndex q)
       : c_(complex), s_(s), p_(p), q_(q) {}
 
-  bool run() { return collect_star() && (pull_into(p_) || pull_into(q_) || move_aside()); }
+  bool run(bool may_add_points) {
+    return collect_star() && (pull_into(p_) || pull_into(q_) || move_aside(may_add_points));
+  }
 
  private:
   bool collect_star() {
@@ -57,7 +59,7 @@ class CurvePointRemoval {
   }
 
   /// To one side of the edge, where that is met by little but the tets around s then.
-  bool move_aside() {
+  bool move_aside(bool may_add_points) {
     std::vector<Wall> walls;
     double reach = 0;
     for (const Face& f : link_) {
@@ -71,15 +73,14 @@ class CurvePointRemoval {
     Point axis;
     axis[least] = 1;
     const Point u = cross(along, axis), v = cross(along, u) / length(along);
-    const std::vector<bool> everything(c_.num_vertices(), true);
+    const std::vector<bool> everywhere(may_add_points ? c_.num_vertices() : 0, true);
     const TetComplex before = c_;  // what a failed search has switched is put back
     for (const Point& direction : {u, v, -1 * u, -1 * v}) {
       const auto place = find_visible_point(walls, c_.point(s_), {direction}, reach);
       if (!place) continue;
       free_point();
       c_.vertex[s_] = {place->x, place->y, place->z, c_.vertex[s_].h};
-      if (EdgeFlips(c_, c_.kept_edges).recover(p_, q_, {}) ||
-          EdgeFlips(c_, c_.kept_edges).recover(p_, q_, everything)) {
+      if (EdgeFlips(c_, c_.kept_edges).recover(p_, q_, everywhere)) {
         c_.kept_edges.insert(p_, q_);
         return true;
       }
@@ -141,8 +142,8 @@ void keep_curve_edges(TetComplex& complex, const Segments& segments) {
   }
 }
 
-bool remove_curve_point(TetComplex& complex, VertexIndex s, VertexIndex p, VertexIndex q) {
-  return CurvePointRemoval(complex, s, p, q).run();
+bool remove_curve_point(TetComplex& complex, VertexIndex s, VertexIndex p, VertexIndex q, bool may_add_points) {
+  return CurvePointRemoval(complex, s, p, q).run(may_add_points);
 }
 
 std::vector<std::vector<CurvePiece>> find_curve_pieces(const TetComplex& complex, const Model& model,

@@ -14,9 +14,9 @@ void keep_curve_edges(TetComplex& complex, const Segments& segments);
 /// @brief Take a Steiner point off a curve: its neighbours p and q on it become the ends of one kept edge.
 ///
 /// s is pulled into p or q where that sees all of the star; else it is moved off the edge, and (p, q) recovered by
-/// switches.
+/// switches. `may_add_points`: also by free points beside it, where tets that are switched cannot be filled without.
 /// @return false where neither will do: then nothing has changed
-bool remove_curve_point(TetComplex& complex, VertexIndex s, VertexIndex p, VertexIndex q);
+bool remove_curve_point(TetComplex& complex, VertexIndex s, VertexIndex p, VertexIndex q, bool may_add_points);
 
 /// @brief The edges of the complex that the curves became, in order along them; what lies outside is counted by curve.
 /// @param[in,out] report  counts of curves' edges and of embedded points

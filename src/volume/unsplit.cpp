@@ -25,6 +25,7 @@ namespace {
 constexpr int kMaxPasses = 20;
 constexpr double kFlat = 1e-7;  ///< mean ratio of a tet that is flat to rounding: a place to avoid as long as possible
 constexpr int kMaxGrowth = 60;  ///< tets that a sector takes in beyond the star of its point
+constexpr int kMaxCurvePasses = 3;  ///< in which nothing has moved, before points on curves stay
 constexpr int kLookAheads = 6;  ///< places on which walls in the way are looked for, tried in turn:
 constexpr double kCloser = 1. / 8;  ///< of the sector's reach from its point inwards, and so on
 
@@ -506,9 +507,10 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
   const auto remove = [&](VertexIndex s) {
     if (!is_on_curve(segments, s)) return removal.remove(s);
     removal.is_at_sheet_border = false;
+    if (removal.growth > kMaxCurvePasses) return false;
     ends.clear();
     segments.neighbours(s, ends);
-    return remove_curve_point(complex, s, ends[0], ends[1]);
+    return remove_curve_point(complex, s, ends[0], ends[1], removal.growth > 0);
   };
   std::set<VertexIndex> at_border;
   for (int pass = 0; pass < kMaxPasses && !left.empty(); ++pass) {
