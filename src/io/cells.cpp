@@ -92,8 +92,8 @@ void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std:
 void note_left_out_curves(const Mesh& mesh, const char* format, std::vector<std::string>& notes) {
   const std::size_t lines = mesh.num_cells(CellType::line), points = mesh.num_cells(CellType::vertex);
   if (mesh.dimension == 3 && lines + points > 0)
-    notes.push_back(fmt::format("{}: {} line and {} vertex cells are left out; VTU and MSH keep them", format, lines,
-                                points));
+    notes.push_back(
+        fmt::format("{}: {} line and {} vertex cells are left out; VTU and MSH keep them", format, lines, points));
 }
 
 void TagGroups::name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind) {

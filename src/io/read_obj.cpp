@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: vertices, polygons, lines (l) and points (p); texture and normal indices are skipped. A face's patch is named by its group
-// (g), object (o) or material (usemtl): the first of these that tells faces apart, else the first that is there; lines and points go by the same.
+// Wavefront OBJ: vertices, polygons, lines (l) and points (p); texture and normal indices are skipped. A face's patch
+// is named by its group (g), object (o) or material (usemtl): the first of these that tells faces apart, else the first
+// that is there; lines and points go by the same.
 #include <fmt/format.h>
 
 #include <algorithm>

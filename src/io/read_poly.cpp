@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "delfront/errors.hpp"
@@ -70,6 +71,7 @@ class PolyReader {
     for (Point& hole : holes) {
       cursor_.integer("number of a hole");
       for (int k = 0; k < 3; ++k) hole[k] = cursor_.number("coordinate of a hole");
+      if (!is_in_range(hole)) cursor_.fail("a hole is at no place: its coordinates are not finite, or too large");
     }
     ++num_facets_read_;
     if (rings.empty()) return add_embedded(inside, marker);
@@ -124,19 +126,37 @@ class PolyReader {
       const std::uint32_t a = number(piece[0]), b = number(piece.back());
       if (piece.size() == 2) facet.edges.push_back({a, b});
     }
+    if (!std::all_of(facet.points.begin(), facet.points.end(), is_in_range)) {  // said when all is read
+      for (const std::vector<VertexId>& ring : rings) add_face(mesh_, ring, group);
+      return;
+    }
+    const FacetTriangles made = triangulate_or_fail(facet, global, begin);
+    for (const auto& [a, b, c] : made.triangles) add_face(mesh_, std::array{global[a], global[b], global[c]}, group);
+    for (const FacetTriangles::Piece& piece : made.pieces)
+      if (piece.edge >= num_ring_edges)
+        add_cell(mesh_, CellType::line, std::array{global[piece.a], global[piece.b]},
+                 marker != 0 ? groups_(1, marker) : GroupId());
+  }
+
+  /// What the predicates hold.
+  static bool is_in_range(const Point& p) {
+    constexpr double kLargest = 0x1p100;
+    return std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest && std::abs(p.z) <= kLargest;
+  }
+
+  FacetTriangles triangulate_or_fail(const FacetOutline& facet, const std::vector<VertexId>& global,
+                                     std::size_t begin) {
     try {
-      for (const auto& [a, b, c] : triangulate_facet(facet, context_))
-        add_face(mesh_, std::array{global[a], global[b], global[c]}, group);
+      return triangulate_facet(facet, context_);
     } catch (const InputError& e) {
       std::string numbers;
       for (const VertexId v : global)
         numbers += fmt::format(" {}", static_cast<std::int64_t>(v.index()) + first_index_);
-      cursor_.fail_at(begin, fmt::format("facet {} cannot be triangulated: {} (counted from 0, its points are{})",
-                                         num_facets_read_, e.what(), numbers));
+      cursor_.fail_at(begin,
+                      fmt::format("facet {} cannot be triangulated: {} (counted from 0 in the points of the facet, "
+                                  "which are{})",
+                                  num_facets_read_, e.what(), numbers));
     }
-    for (std::size_t i = num_ring_edges; i < facet.edges.size(); ++i)
-      add_cell(mesh_, CellType::line, std::array{global[facet.edges[i][0]], global[facet.edges[i][1]]},
-               marker != 0 ? groups_(1, marker) : GroupId());
   }
 
   std::vector<VertexId> read_corners() {

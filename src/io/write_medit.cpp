@@ -68,7 +68,8 @@ void write_medit(const Mesh& mesh, Output& out, const WriteOptions&, Context& co
                  std::vector<std::string>& notes) {
   note_left_out_fields(mesh, "Medit", notes);
   for (const Group& group : mesh.groups)
-    if (group.dimension == 0) notes.push_back(fmt::format("Medit: the name of the points '{}' is left out", group.name));
+    if (group.dimension == 0)
+      notes.push_back(fmt::format("Medit: the name of the points '{}' is left out", group.name));
   for (const CellBlock& block : mesh.blocks) {
     if (block.size() == 0 || keyword(block.type)) continue;
     throw InputError(fmt::format("Medit cannot hold {} {} cells; write VTU, or triangulate them first", block.size(),

@@ -67,7 +67,7 @@ class FoamWriter {
     if (faces_.num_loose > 0)
       notes.push_back(fmt::format("OpenFOAM: {} faces that bound no cell are left out", faces_.num_loose));
     note_left_out_fields(mesh, "OpenFOAM", notes);
-  note_left_out_curves(mesh, "OpenFOAM", notes);
+    note_left_out_curves(mesh, "OpenFOAM", notes);
   }
 
   void write(const std::string& folder, const std::string& shown) {

@@ -264,6 +264,8 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"quality", to_json(result.report.quality)},
       {"boundaries", groups_json(result.mesh, 2)},
       {"regions", groups_json(result.mesh, 3)},
+      {"curves", result.mesh.dimension == 3 ? groups_json(result.mesh, 1) : Json::array()},
+      {"points", groups_json(result.mesh, 0)},
       {"failed_gates", result.failed_gates},
       {"files_written", result.files_written},
       {"defects_file", result.defects_file},

@@ -24,15 +24,16 @@ class FacetTriangulation {
     if (facet.normal[drop] < 0) std::swap(first_axis_, second_axis_);
   }
 
-  std::vector<std::array<std::uint32_t, 3>> run() {
+  FacetTriangles run() {
     connect();
     flood();
-    std::vector<std::array<std::uint32_t, 3>> triangles;
+    FacetTriangles result;
     for (TriIndex t = 0; t < c_.tri.size(); ++t)
-      if (!c_.is_dead(t) && !is_outside_[t]) triangles.push_back(std::to_array(c_.tri[t].node));
-    if (triangles.empty()) throw InputError("its edges enclose nothing");
+      if (!c_.is_dead(t) && !is_outside_[t]) result.triangles.push_back(std::to_array(c_.tri[t].node));
+    if (result.triangles.empty()) throw InputError("its edges enclose nothing");
     check_all_used();
-    return triangles;
+    for (const PlanarPiece& piece : grid_.pieces) result.pieces.push_back({piece.a, piece.b, piece.curve});
+    return result;
   }
 
  private:
@@ -45,16 +46,13 @@ class FacetTriangulation {
       throw InputError(
           fmt::format("points {} and {} of it are at one place seen from it", equal[0].first, equal[0].second));
     PlanarDomain edges;
-    edges.curves.push_back({"", ""});
     std::vector<VertexIndex> same_as(facet_.points.size());
     for (VertexIndex v = 0; v < same_as.size(); ++v) same_as[v] = v;
     for (const auto& [a, b] : facet_.edges) {
+      edges.curve_of_segment.emplace_back(edges.segments.size());  // as what it is found again
       edges.segments.push_back({VertexId(a), VertexId(b)});
-      edges.curve_of_segment.emplace_back(0u);
     }
     insert_segments(edges, same_as, grid_, context_);
-    for (const auto& [a, b] : facet_.edges)
-      if (c_.find_edge(a, b) == kNoTri) throw InputError(fmt::format("its edge {} {} runs through a point", a, b));
   }
 
   /// What ghosts and seeds of holes reach over unconstrained edges.
@@ -90,10 +88,10 @@ class FacetTriangulation {
         for (const VertexIndex v : c_.tri[t].node) is_used[v] = true;
     if (const auto at = std::find(is_used.begin(), is_used.end(), false); at != is_used.end())
       throw InputError(fmt::format("its point {} lies outside of it", at - is_used.begin()));
-    for (const auto& [a, b] : facet_.edges) {
-      const EdgeRef ref = c_.find_edge(a, b);
+    for (const PlanarPiece& piece : grid_.pieces) {
+      const EdgeRef ref = c_.find_edge(piece.a, piece.b);
       if (is_outside_[ref >> 2] && is_outside_[c_.across(ref) >> 2])
-        throw InputError(fmt::format("its edge {} {} lies outside of it", a, b));
+        throw InputError(fmt::format("its edge {} {} lies outside of it", piece.a, piece.b));
     }
   }
 
@@ -108,7 +106,7 @@ class FacetTriangulation {
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> triangulate_facet(const FacetOutline& facet, Context& context) {
+FacetTriangles triangulate_facet(const FacetOutline& facet, Context& context) {
   return FacetTriangulation(facet, context).run();
 }
 

@@ -18,13 +18,23 @@ struct FacetOutline {
   Point normal;                                     ///< from which side it is seen; of any length but 0
 };
 
+struct FacetTriangles {
+  /// An edge of the facet, or the part of one between points on it.
+  struct Piece {
+    std::uint32_t a, b, edge;
+  };
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Piece> pieces;
+};
+
 /// @brief Constrained Delaunay triangles of what a facet's edges enclose, anticlockwise seen from its normal.
 ///
 /// Seen along the axis that the normal is nearest to, so that the facet may be warped a little. Every edge is a side of
-/// a triangle, every point a corner.
-/// @throws InputError  edges that cross or run through a point, equal points, nothing enclosed, an edge or a point
-/// outside of the rings or in a hole
+/// a triangle, or a row of sides where points lie on it; every point is a corner.
+/// @pre coordinates are finite and at most 2^100
+/// @throws InputError  edges that cross, equal points, nothing enclosed, an edge or a point outside of the rings or in
+/// a hole
 /// @par Cost  O(n log n)
-std::vector<std::array<std::uint32_t, 3>> triangulate_facet(const FacetOutline& facet, Context& context);
+FacetTriangles triangulate_facet(const FacetOutline& facet, Context& context);
 
 }  // namespace delfront

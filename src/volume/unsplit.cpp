@@ -26,7 +26,7 @@ constexpr int kMaxPasses = 20;
 constexpr double kFlat = 1e-7;  ///< mean ratio of a tet that is flat to rounding: a place to avoid as long as possible
 constexpr int kMaxGrowth = 60;  ///< tets that a sector takes in beyond the star of its point
 constexpr int kMaxCurvePasses = 3;  ///< in which nothing has moved, before points on curves stay
-constexpr int kLookAheads = 6;  ///< places on which walls in the way are looked for, tried in turn:
+constexpr int kLookAheads = 6;      ///< places on which walls in the way are looked for, tried in turn:
 constexpr double kCloser = 1. / 8;  ///< of the sector's reach from its point inwards, and so on
 
 using Face = std::array<VertexIndex, 3>;

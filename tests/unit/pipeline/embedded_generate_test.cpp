@@ -2,6 +2,7 @@
 // Curves and points in the volume through the whole run: refinement and improvement leave them where they are.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
@@ -37,6 +38,10 @@ Facets ball_with_walks(unsigned seed, int levels, int steps) {
     const Point d{normal(random), normal(random), normal(random)};
     return d / length(d);
   };
+  const auto is_near = [&](Point p) {  // else no grid could be good
+    return std::any_of(body.points.begin(), body.points.end(),
+                       [&](const Point& q) { return distance(p, q) < 0.7 * h; });
+  };
   const std::size_t start = add_point(body, {0.1, 0.05, -0.02});
   for (int arm = 0; arm < 2; ++arm) {
     std::vector<std::size_t> curve{start};
@@ -45,7 +50,7 @@ Facets ball_with_walks(unsigned seed, int levels, int steps) {
       d = d + 0.4 * direction();
       d = d / length(d);
       const Point next = body.points[curve.back()] + h * d;
-      if (length(next) > 0.9) {
+      if (length(next) > 0.9 || is_near(next)) {
         d = direction();
         continue;
       }
@@ -53,7 +58,12 @@ Facets ball_with_walks(unsigned seed, int levels, int steps) {
     }
     body.curves.push_back(curve);
   }
-  for (int i = 0; i < 5; ++i) body.corners.push_back(add_point(body, (0.3 + 0.1 * i) * direction()));
+  for (int i = 0; i < 5;) {
+    const Point alone = (0.3 + 0.1 * i) * direction();
+    if (is_near(alone)) continue;
+    body.corners.push_back(add_point(body, alone));
+    ++i;
+  }
   return body;
 }
 
@@ -152,20 +162,20 @@ TEST(GenerateEmbedded, what_meets_outside_of_common_vertices_is_refused) {
     return errors_of(body);
   };
   using Kinds = std::vector<std::string>;
-  const Point a{0.2, 0.3, 0.4}, b{0.7, 0.6, 0.5}, middle = 0.5 * (a + b);
+  const Point a{0.25, 0.3125, 0.375}, b{0.75, 0.625, 0.5}, middle = 0.5 * (a + b), other{0.375, 0.5, 0.125};
   EXPECT_EQ(with({{a, b}}, {{0.1, 0.2, 0.3}}), Kinds{});
   EXPECT_EQ(with({{a, {0.3, 0.2, 1.5}}}), Kinds{"curves_through_facets 1"});
-  EXPECT_EQ(with({{a, {0.3, 0.2, 1}}}), Kinds{"curves_through_facets 1"});  // ends in a facet
-  EXPECT_EQ(with({{{0.3, 0.2, 1}, {0.2, 0.6, 1}}}), Kinds{"curves_through_facets 2"});  // in both triangles of a side
-  EXPECT_EQ(with({{{0, 0, 0}, {0, 1, 1}}, {{0, 0, 1}, {0, 1, 0}}}).size(), 2u);  // one of them is no diagonal
-  EXPECT_EQ(with({{{0, 0, 0}, {0.5, 0, 0}}}), Kinds{"curves_through_facets 2"});  // along a part of an edge
-  EXPECT_EQ(with({{{-1, -1, -1}, {2, 2, 2}}}).size(), 1u);                        // through two corners
-  EXPECT_EQ(with({{a, b}, {{0.4, 0.5, 0.1}, 2 * middle - Point{0.4, 0.5, 0.1}}}), Kinds{"crossing_curves 1"});
-  EXPECT_EQ(with({{a, b}, {middle, {0.5, 0.1, 0.1}}}), Kinds{"crossing_curves 1"});       // a T
+  EXPECT_EQ(with({{a, {0.3, 0.2, 1}}}), Kinds{"curves_through_facets 1"});              // ends in a facet
+  EXPECT_EQ(with({{{0.6, 0.1, 1}, {0.5, 0.9, 1}}}), Kinds{"curves_through_facets 2"});  // in both triangles of a side
+  EXPECT_EQ(with({{{0, 0, 0}, {0, 1, 1}}, {{0, 0, 1}, {0, 1, 0}}}).size(), 2u);         // one of them is no diagonal
+  EXPECT_EQ(with({{{0, 0, 0}, {0.5, 0, 0}}}), Kinds{"curves_through_facets 2"});        // along a part of an edge
+  EXPECT_EQ(with({{{-1, -1, -1}, {2, 2, 2}}}).size(), 1u);                              // through two corners
+  EXPECT_EQ(with({{a, b}, {other, 2 * middle - other}}), Kinds{"crossing_curves 1"});
+  EXPECT_EQ(with({{a, b}, {middle, {0.5, 0.1, 0.1}}}), Kinds{"crossing_curves 1"});  // a T
   EXPECT_EQ(with({{{0.25, 0.5, 0.5}, {0.5, 0.5, 0.5}}, {{0.375, 0.5, 0.5}, {0.75, 0.5, 0.5}}}),
-            Kinds{"crossing_curves 1"});                                                  // overlap
+            Kinds{"crossing_curves 1"});                                                                  // overlap
   EXPECT_EQ(with({{{0.25, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.375, 0.5, 0.5}}}), Kinds{"crossing_curves 1"});  // back
-  EXPECT_EQ(with({{{0.25, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.75, 0.5, 0.5}}}), Kinds{});      // straight on
+  EXPECT_EQ(with({{{0.25, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.75, 0.5, 0.5}}}), Kinds{});                      // straight on
   EXPECT_EQ(with({{a, a}}), Kinds{"degenerate_curves 1"});
   EXPECT_EQ(with({}, {{0.3, 0.2, 1}}), Kinds{"points_on_facets 1"});
   EXPECT_EQ(with({}, {{0.5, 0, 1}}), Kinds{"points_on_facets 1"});

@@ -132,7 +132,8 @@ TEST(Embedded, a_fan_of_curves_at_one_point) {
     Facets body = gridded_cube(6);
     const std::size_t apex = add_point(body, {0.5, 0.5, 0.5});
     for (int i = 0; i < n; ++i) {
-      const double z = 1 - (2 * i + 1) / double(n), r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * 1.2360679775;
+      const double z = 1 - (2 * i + 1) / double(n), r = std::sqrt(1 - z * z),
+                   turn = i * std::numbers::pi * 1.2360679775;
       const double reach = 0.1 + 0.38 * (i % 7) / 7;
       body.curves.push_back(
           {apex, add_point(body, body.points[apex] + reach * Point{r * std::cos(turn), r * std::sin(turn), z})});
@@ -163,9 +164,9 @@ TEST(Embedded, curves_along_lattice_points) {
   const auto at = [&](int i, int j, int k) { return add_point(body, {i / 4.0, j / 4.0, k / 4.0}); };
   body.curves.push_back({at(1, 1, 1), at(2, 1, 1), at(2, 2, 1), at(2, 2, 2), at(3, 3, 3)});
   body.curves.push_back({at(1, 2, 2), at(2, 3, 2), at(3, 3, 2)});
-  body.curves.push_back({at(0, 2, 2), at(1, 2, 2)});           // from the surface
-  body.curves.push_back({at(1, 1, 3), at(2, 2, 2)});           // a diagonal of a square
-  body.curves.push_back({at(3, 1, 1), at(2, 2, 2)});           // the diagonal of a cube
+  body.curves.push_back({at(0, 2, 2), at(1, 2, 2)});  // from the surface
+  body.curves.push_back({at(1, 1, 3), at(2, 2, 2)});  // a diagonal of a square
+  body.curves.push_back({at(3, 1, 1), at(2, 2, 2)});  // the diagonal of a cube
   for (int i = 1; i < 4; ++i) body.corners.push_back(at(i, 1, 2));
   const Recovered r = expect_recovered(body, 1);
   EXPECT_EQ(r.report.curve_edges, 9u);
