@@ -58,7 +58,8 @@ struct NamedMesh {
 
 /// @brief Build a model from surface meshes: weld exactly, triangulate n-gons, name patches.
 ///
-/// Nothing is mended and nothing dropped: degenerate and duplicate facets stay, for check_surface to name.
+/// Nothing is mended and nothing dropped: degenerate and duplicate facets stay, for check_surface to name. An input may
+/// hold lines or points alone. Of lines given twice the first stays.
 /// @throws InputError  no faces at all; a coordinate that is not finite (places given)
 /// @par Cost  O(n log n)
 Model build_model(const std::vector<NamedMesh>& inputs, Context& context);

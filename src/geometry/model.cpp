@@ -187,7 +187,7 @@ void ModelBuilder::add(const NamedMesh& input) {
       add_face(block[i], patch_for(input, group), input.stem);
     }
   }
-  if (num_faces_ == faces_before)
+  if (num_faces_ == faces_before && !input.mesh.find_block(CellType::line) && !input.mesh.find_block(CellType::vertex))
     throw InputError(fmt::format("{}: no faces in it; a surface of triangles or polygons is needed", input.stem));
 }
 

@@ -38,7 +38,8 @@ class ObjReader {
     if (max_index_ >= static_cast<std::int64_t>(mesh_.points.size()))
       cursor_.fail_at(max_index_at_, fmt::format("vertex {} is out of range: the file has {} vertices", max_index_ + 1,
                                                  mesh_.points.size()));
-    if (offsets_.size() == 1) throw InputError(fmt::format("{}: the OBJ file has no faces (f lines)", cursor_.path()));
+    if (offsets_.size() == 1 && embedded_.empty())
+      throw InputError(fmt::format("{}: the OBJ file has no faces (f lines)", cursor_.path()));
     add_faces();
     add_embedded();
     check_finite(mesh_, cursor_.path());

@@ -57,6 +57,12 @@ class Embedded(case.Case):
         self.assertEqual([c["name"] for c in report["curves"]], ["wire"])
         self.assertEqual([c["num_cells"] for c in report["points"]], [1])
 
+    def test_curves_may_come_in_a_file_of_their_own(self):
+        self.write("box.obj", box_obj([], ""))
+        self.write("wire.obj", "v 0.2 0.3 0.4\nv 0.6 0.5 0.45\nv 1 1 1\no wire\nl 1 2 3\n")
+        self.expect(3, "info", "wire.obj", says="neither faces")
+        self.expect(0, "mesh", "box.obj", "wire.obj", "-o", "grid.vtu", says="wire (2)")
+
     def test_in_a_far_field_what_lies_in_the_body_is_left_out(self):
         points = [(0.3, 0.4, 0.5), (0.5, 0.55, 0.45), (2.0, 0.5, 0.5), (2.5, 0.6, 0.5)]
         self.write("box.obj", box_obj(points, "g inner\nl 9 10\ng wake\nl 11 12\n"))

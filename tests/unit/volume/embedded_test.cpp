@@ -221,7 +221,7 @@ TEST(Embedded, a_tangle_of_long_chords_is_kept_or_reported) {
 /// Short chords at random among the notches of Chazelle's polyhedron, whose facets have to be filled again: those that
 /// the exact check lets pass are there, or outside.
 TEST(Embedded, curves_among_facets_that_need_points) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 5);
+  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = (setting("DELFRONT_RANDOM_CASES", 50) + 9) / 10;
   std::size_t inside = 0;
   for (unsigned seed = first; seed < first + cases; ++seed) {
     SCOPED_TRACE("DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");
