@@ -11,10 +11,10 @@
 #include <map>
 
 #include "delfront/errors.hpp"
+#include "delfront/facet.hpp"
 #include "io/cells.hpp"
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
-#include "planar/facet.hpp"
 
 namespace delfront {
 

@@ -39,7 +39,8 @@ TEST(Check, finds_nothing_in_valid_grids) {
 TEST(Check, lines_are_edges_of_cells) {
   Mesh mesh = grids::cube(1);  // six tets around the diagonal from (0, 0, 0) to (1, 1, 1)
   const auto at = [&](Point p) {
-    return VertexId(static_cast<std::size_t>(std::find(mesh.points.begin(), mesh.points.end(), p) - mesh.points.begin()));
+    return VertexId(
+        static_cast<std::size_t>(std::find(mesh.points.begin(), mesh.points.end(), p) - mesh.points.begin()));
   };
   std::vector<VertexId>& lines = mesh.block(CellType::line).vertices;
   lines = {at({1, 1, 1}), at({0, 0, 0}), at({0, 0, 0}), at({1, 0, 0})};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "planar/facet.hpp"
+#include "delfront/facet.hpp"
 
 #include <gtest/gtest.h>
 
