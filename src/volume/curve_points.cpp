@@ -12,6 +12,8 @@ namespace delfront {
 
 namespace {
 
+constexpr std::size_t kMostFills = 60;  ///< a way to switch an edge takes a few where there is one
+
 using Face = std::array<VertexIndex, 3>;
 
 bool has(const Face& face, VertexIndex v) { return face[0] == v || face[1] == v || face[2] == v; }
@@ -80,7 +82,7 @@ class CurvePointRemoval {
       if (!place) continue;
       free_point();
       c_.vertex[s_] = {place->x, place->y, place->z, c_.vertex[s_].h};
-      if (EdgeFlips(c_, c_.kept_edges).recover(p_, q_, everywhere)) {
+      if (EdgeFlips(c_, c_.kept_edges).recover(p_, q_, everywhere, kMostFills)) {
         c_.kept_edges.insert(p_, q_);
         return true;
       }

@@ -14,7 +14,8 @@ constexpr std::size_t kMaxRing = 40;        ///< tets around an edge that is swi
 constexpr std::size_t kMaxVisited = 20000;  ///< tets looked at beyond the star of one end
 }  // namespace
 
-bool EdgeFlips::recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat) {
+bool EdgeFlips::recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat, std::size_t most_fills) {
+  fills_left_ = most_fills;
   sideways_ = kMaxSideways;
   std::size_t most = kMaxSwitches;
   for (std::size_t k = 0; k < most; ++k) {
@@ -293,6 +294,8 @@ bool EdgeFlips::switch_edge(TetIndex t, VertexIndex p, VertexIndex q, VertexInde
 
 /// Fills the part of the ring between its vertices i and j with tets from a new point, near where the diagonals cross.
 bool EdgeFlips::fill_half_from_point(VertexIndex p, VertexIndex q, std::size_t i, std::size_t j) {
+  if (fills_left_ == 0) return false;
+  --fills_left_;
   const VertexIndex u = polygon_[i], w = polygon_[j];
   std::vector<std::array<VertexIndex, 3>> faces = {{u, w, q}, {u, p, w}};
   const Point from = c_.point(p), to = c_.point(q);

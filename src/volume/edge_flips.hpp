@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -18,10 +19,13 @@ namespace delfront {
 /// @par Source  George, Borouchaki & Saltel (2003); Si (2015), section 4
 class EdgeFlips {
  public:
+  static constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
+
   EdgeFlips(TetComplex& complex, const EdgeSet& required) : c_(complex), required_(required) {}
 
   /// @param flat  one a vertex: whether it lies in the flat part of the surface that (a, b) runs through
-  bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
+  /// @param most_fills  times that a place for a point is looked for, which takes longer than all else
+  bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat, std::size_t most_fills = kAnyNumber);
 
   /// @brief Switch faces that are not locally Delaunay (2-3, 3-2, 4-4 where flat), until none is left that can be.
   ///
@@ -56,6 +60,7 @@ class EdgeFlips {
   const EdgeSet& required_;
   std::vector<Obstacle> obstacles_, tried_;
   bool may_add_points_ = false;
+  std::size_t fills_left_ = kAnyNumber;
   int sideways_ = 0;  ///< switches left that may leave as much in the way as before
   std::vector<TetIndex> ring_, scratch_, visited_, new_tets_;
   std::vector<VertexIndex> polygon_;
