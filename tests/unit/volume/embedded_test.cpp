@@ -93,6 +93,8 @@ TEST(Embedded, random_curves_in_a_box) {
     edges += r.report.curve_edges;
     split += r.report.curve_edges_split;
   }
+  RecordProperty("edges", std::to_string(edges));
+  RecordProperty("split", std::to_string(split));
   EXPECT_LE(split, edges / 10) << "of " << edges << " edges";
 }
 
@@ -109,6 +111,8 @@ TEST(Embedded, random_curves_in_a_sphere) {
     edges += r.report.curve_edges;
     split += r.report.curve_edges_split;
   }
+  RecordProperty("edges", std::to_string(edges));
+  RecordProperty("split", std::to_string(split));
   EXPECT_LE(split, edges / 10) << "of " << edges << " edges";
 }
 
