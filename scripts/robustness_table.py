@@ -23,7 +23,8 @@ import corpus_table  # noqa: E402
 ROOT = corpus_table.ROOT
 BEGIN, END = "<!-- robustness_table.py: begin -->", "<!-- robustness_table.py: end -->"
 FAMILIES = (
-    ("tests/test_volume", "HardSurfaces.*:Adversaries.*:RandomPolyhedra.*:VolumeFinds.*"),
+    ("tests/test_volume", "HardSurfaces.*:Adversaries.*:RandomPolyhedra.*:VolumeFinds.*:Embedded.*"),
+    ("tests/test_pipeline", "GenerateEmbedded.*"),
     ("tests/test_improve", "TurnedCopies.*"),
 )
 FIRST_PAGE = f"""# Robustness

@@ -20,6 +20,11 @@ struct RecoveryReport {
   std::size_t steiner_points = 0;                    ///< put on surface edges on the way
   std::size_t steiner_moved = 0;                     ///< moved into the volume again, so that the surface is unchanged
   std::size_t steiner_left = 0;                      ///< still on the surface: its triangles there are subdivided
+  std::size_t curve_edges = 0;                       ///< edges of the model's curves in the regions ...
+  std::size_t curve_edges_inside = 0;                ///< ... of these: no edges of triangles
+  std::size_t curve_edges_split = 0;                 ///< ... of these: kept as collinear pieces
+  std::size_t curve_points_left = 0;                 ///< still on curves inside, where they divide edges
+  std::size_t embedded_points = 0;                   ///< on no triangle and no curve
   std::vector<Place> left;
   std::vector<std::string> left_why;  ///< one a place of `left`: why its triangles had to stay divided
 };

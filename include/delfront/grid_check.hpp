@@ -11,7 +11,7 @@
 namespace delfront {
 
 /// @brief Is it a grid at all? Exact: indices, repeated vertices, positive cells, conformity, boundary faces stored,
-/// closed boundary, unused and doubled points.
+/// closed boundary, lines that are edges of cells, unused and doubled points.
 /// @return empty for a valid grid
 std::vector<Finding> check(const Mesh& mesh);
 

@@ -17,7 +17,8 @@ struct Patch {
   std::string kind;  ///< "wall", "patch", "farfield", …; empty: not said
 };
 
-/// @brief A feature edge: a chain of surface vertices between corners, or closed.
+/// @brief A chain of straight edges that the grid keeps: along edges of triangles (a feature), through the volume
+/// (embedded), or both.
 struct Curve {
   std::string name;
   std::vector<VertexId> vertices;
@@ -30,6 +31,8 @@ struct Region {
 
 /// @brief What is to be gridded: corners, curves, patches, regions with names. Discrete now; CAD feeds the same shape.
 ///
+/// Curves come from the line cells of the input, corners from its vertex cells: points that the grid keeps where they
+/// are, on triangles and curves or alone in the volume.
 /// `points` are the welded input vertices in input order (exact equality, -0 = +0, first occurrence wins);
 /// triangles keep the order of the input; n-gons are ear-clipped.
 struct Model {
@@ -40,6 +43,7 @@ struct Model {
   Array<PatchId, Patch> patches;
   Array<CurveId, Curve> curves;
   std::vector<VertexId> corners;
+  std::vector<std::string> corner_names;  ///< one a corner
   Array<RegionId, Region> regions;
   double feature_angle = 40;  ///< degrees, for curves and corners found by angle
 
@@ -54,7 +58,8 @@ struct NamedMesh {
 
 /// @brief Build a model from surface meshes: weld exactly, triangulate n-gons, name patches.
 ///
-/// Nothing is mended and nothing dropped: degenerate and duplicate facets stay, for check_surface to name.
+/// Nothing is mended and nothing dropped: degenerate and duplicate facets stay, for check_surface to name. An input may
+/// hold lines or points alone. Of lines given twice the first stays.
 /// @throws InputError  no faces at all; a coordinate that is not finite (places given)
 /// @par Cost  O(n log n)
 Model build_model(const std::vector<NamedMesh>& inputs, Context& context);

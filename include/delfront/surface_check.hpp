@@ -31,7 +31,7 @@ struct SurfaceReport {
   bool is_closed = false;       ///< every edge has exactly two triangles
   bool is_manifold = false;
   bool is_oriented = false;       ///< every edge is run once in each direction
-  bool can_bound_volume = false;  ///< valid PLC that encloses at least one bounded region
+  bool can_bound_volume = false;  ///< valid PLC, curves and points with it, that encloses at least one bounded region
   std::size_t reoriented = 0;     ///< triangles that were turned to make closed shells consistent
   std::vector<SurfaceComponent> components;
   std::string likely_unit;  ///< "m", "mm", "in", "" and why, e.g. "mm (longest side 355.6)"
@@ -39,7 +39,8 @@ struct SurfaceReport {
 };
 
 /// @brief Everything that can be wrong with a surface, exactly: open edges, non-manifold edges and vertices,
-/// orientation, duplicates, degenerate triangles, self-intersections (exact, over a BVH), nesting, thin spots.
+/// orientation, duplicates, degenerate triangles, self-intersections (exact, over a BVH), nesting, thin spots; curves
+/// and points that meet facets or each other outside of common vertices.
 /// @par Cost  O(n log n + pairs that overlap in boxes)
 SurfaceReport check_surface(const Model& model, Context& context);
 

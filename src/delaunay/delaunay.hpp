@@ -40,7 +40,8 @@ class DelaunayKernel {
     duplicate,    ///< equals a vertex that is in already; see `duplicate_of`
     outside,      ///< in a constrained complex: outside of the hull
     too_close,    ///< a vertex of the cavity is nearer than asked
-    not_visible,  ///< in a constrained complex: no star-shaped cavity, or one that would swallow a vertex
+    not_visible,  ///< in a constrained complex: no star-shaped cavity, or one that would swallow a vertex or a kept
+                  ///< edge
     not_ours      ///< it touches tets that are not ours, or no slot is left: nothing changed, try again later
   };
 
@@ -107,6 +108,7 @@ class DelaunayKernel {
   void make_ball();
   bool make_star_shaped(TetIndex start);
   bool swallows_a_vertex() const;
+  bool swallows_a_kept_edge() const;
   void clear_marks();
   bool has_room() const { return !is_confined() || slots_.size() + cavity_.size() >= ball_.faces.size(); }
   TetIndex take_slot();

@@ -360,6 +360,16 @@ bool DelaunayKernel::swallows_a_vertex() const {
   return false;
 }
 
+/// Kept edges inside of the cavity would vanish too.
+bool DelaunayKernel::swallows_a_kept_edge() const {
+  return c_.loses_kept_edge({cavity_.data(), cavity_.size()}, [this](VertexIndex a, VertexIndex b) {
+    return std::any_of(ball_.faces.begin(), ball_.faces.end(), [&](const Ball::Face& f) {
+      const VertexIndex* n = f.node;
+      return (n[0] == a || n[1] == a || n[2] == a) && (n[0] == b || n[1] == b || n[2] == b);
+    });
+  });
+}
+
 void DelaunayKernel::clear_marks() {
   for (const TetIndex t : cavity_) c_.flag[t] &= static_cast<std::uint16_t>(~TetComplex::marked);
 }
@@ -398,6 +408,7 @@ DelaunayKernel::Insert DelaunayKernel::insert_checked(VertexIndex v, TetIndex st
     if (is_whole ? !std::all_of(reached_.begin(), reached_.end(), [&](VertexIndex w) { return ball_.has_vertex(w); })
                  : swallows_a_vertex())
       return Insert::not_visible;
+    if (!c_.kept_edges.empty() && swallows_a_kept_edge()) return Insert::not_visible;
   } else {
     make_ball();
   }

@@ -152,6 +152,8 @@ SurfaceReport check_surface(const Model& model, Context& context) {
     find_regions(surface, shells, report.findings);
     note_turned_shells(surface, shells, report);
   }
+  find_curve_defects(surface, report.findings, context);
+  report.can_bound_volume = report.can_bound_volume && !has_errors(report.findings);
   find_hard_places(surface, is_plc ? &shells : nullptr, report, context);
   std::stable_sort(report.findings.begin(), report.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });

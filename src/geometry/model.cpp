@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include "delfront/findings.hpp"
@@ -39,26 +40,32 @@ class ModelBuilder {
   void weld(const NamedMesh& input);
   PatchId patch_for(const NamedMesh& input, GroupId group);
   void add_face(std::span<const VertexId> corners, PatchId patch, const std::string& stem);
+  void add_curves(const NamedMesh& input);
+  void add_corners(const NamedMesh& input);
 
   Context& context_;
   Model model_;
   std::unordered_map<Point, VertexId, PointHash> welded_;
   std::vector<VertexId> to_model_;                   // by point of the input being added
   std::map<std::uint32_t, PatchId> patch_of_group_;  // of the input being added
+  std::set<std::array<VertexId, 2>> curve_edges_;    // lower end first
+  std::set<VertexId> is_corner_;
+  std::size_t num_repeated_lines_ = 0;
   std::size_t num_points_read_ = 0, num_faces_ = 0;
   std::size_t num_bad_ = 0;  // faces with a coordinate that is not finite …
   std::vector<Place> bad_;   // … the first of them …
   std::string bad_stem_;     // … and the input they are in
 };
 
-std::vector<bool> points_on_faces(const Mesh& mesh, const std::string& stem) {
+/// Of faces, and of the lines and vertices that stay as curves and corners.
+std::vector<bool> points_on_model(const Mesh& mesh, const std::string& stem) {
   std::vector<bool> used(mesh.points.size(), false);
   for (const CellBlock& block : mesh.blocks) {
-    if (dimension(block.type) != 2) continue;
+    if (dimension(block.type) > 2) continue;
     for (VertexId v : block.vertices) {
       if (v.index() >= used.size())
-        throw InputError(fmt::format("{}: a face names point {}, but there are only {}; the file is damaged", stem,
-                                     v.value, used.size()));
+        throw InputError(fmt::format("{}: a {} names point {}, but there are only {}; the file is damaged", stem,
+                                     dimension(block.type) == 2 ? "face" : name_of(block.type), v.value, used.size()));
       used[v.index()] = true;
     }
   }
@@ -66,7 +73,7 @@ std::vector<bool> points_on_faces(const Mesh& mesh, const std::string& stem) {
 }
 
 void ModelBuilder::weld(const NamedMesh& input) {
-  const std::vector<bool> used = points_on_faces(input.mesh, input.stem);
+  const std::vector<bool> used = points_on_model(input.mesh, input.stem);
   to_model_.assign(input.mesh.points.size(), {});
   for (std::size_t i = 0; i < used.size(); ++i) {
     Point p = input.mesh.points[VertexId(i)];
@@ -79,7 +86,8 @@ void ModelBuilder::weld(const NamedMesh& input) {
   }
   const auto unused = std::count(used.begin(), used.end(), false);
   if (unused > 0)
-    context_.log(LogLevel::info, fmt::format("{}: {} points belong to no face and are left out", input.stem, unused));
+    context_.log(LogLevel::info,
+                 fmt::format("{}: {} points belong to no face, line or vertex and are left out", input.stem, unused));
 }
 
 PatchId ModelBuilder::patch_for(const NamedMesh& input, GroupId group) {
@@ -119,8 +127,55 @@ void ModelBuilder::add_face(std::span<const VertexId> corners, PatchId patch, co
   for (const auto& [a, b, c] : triangulate_polygon(places)) add_triangle(a, b, c);
 }
 
+std::string group_name(const Mesh& mesh, const CellBlock& block, std::size_t cell, const char* unnamed) {
+  const GroupId group = cell < block.group.size() ? block.group[cell] : GroupId();
+  const bool is_named = group.is_valid() && group.index() < mesh.groups.size() && !mesh.groups[group].name.empty();
+  return is_named ? mesh.groups[group].name : unnamed;
+}
+
+/// Lines that follow each other under one name make one curve; a line that repeats an earlier one is left out.
+void ModelBuilder::add_curves(const NamedMesh& input) {
+  const CellBlock* lines = input.mesh.find_block(CellType::line);
+  if (!lines) return;
+  bool goes_on = false;
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    const auto ends = (*lines)[i];
+    const VertexId a = to_model_[ends[0].index()], b = to_model_[ends[1].index()];
+    if (!a.is_valid() || !b.is_valid())
+      throw InputError(fmt::format("{}: line {} has a coordinate that is not a finite number", input.stem, i));
+    if (a != b && !curve_edges_.insert({std::min(a, b), std::max(a, b)}).second) {
+      ++num_repeated_lines_;
+      goes_on = false;
+      continue;
+    }
+    const std::string name = group_name(input.mesh, *lines, i, "curves");
+    const std::size_t num_curves = model_.curves.size();
+    Curve* last = goes_on ? &model_.curves[CurveId(num_curves - 1)] : nullptr;
+    if (last && last->vertices.back() == a && last->name == name)
+      last->vertices.push_back(b);
+    else
+      model_.curves.push_back({name, {a, b}});
+    goes_on = true;
+  }
+}
+
+void ModelBuilder::add_corners(const NamedMesh& input) {
+  const CellBlock* vertices = input.mesh.find_block(CellType::vertex);
+  if (!vertices) return;
+  for (std::size_t i = 0; i < vertices->size(); ++i) {
+    const VertexId v = to_model_[(*vertices)[i][0].index()];
+    if (!v.is_valid())
+      throw InputError(fmt::format("{}: vertex {} has a coordinate that is not a finite number", input.stem, i));
+    if (!is_corner_.insert(v).second) continue;
+    model_.corners.push_back(v);
+    model_.corner_names.push_back(group_name(input.mesh, *vertices, i, "points"));
+  }
+}
+
 void ModelBuilder::add(const NamedMesh& input) {
   weld(input);
+  add_curves(input);
+  add_corners(input);
   patch_of_group_.clear();
   const std::size_t faces_before = num_faces_;
   for (const CellBlock& block : input.mesh.blocks) {
@@ -132,7 +187,7 @@ void ModelBuilder::add(const NamedMesh& input) {
       add_face(block[i], patch_for(input, group), input.stem);
     }
   }
-  if (num_faces_ == faces_before)
+  if (num_faces_ == faces_before && !input.mesh.find_block(CellType::line) && !input.mesh.find_block(CellType::vertex))
     throw InputError(fmt::format("{}: no faces in it; a surface of triangles or polygons is needed", input.stem));
 }
 
@@ -167,6 +222,8 @@ Model ModelBuilder::finish() {
     throw InputError(message, std::move(bad_));
   }
   check_range(model_);
+  if (num_repeated_lines_ > 0)
+    context_.log(LogLevel::info, fmt::format("{} lines repeat earlier ones and are left out", num_repeated_lines_));
   if (model_.points.size() < num_points_read_)
     context_.log(LogLevel::info, fmt::format("welded {} equal points: {} are left",
                                              num_points_read_ - model_.points.size(), model_.points.size()));

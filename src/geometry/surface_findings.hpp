@@ -21,6 +21,11 @@ void find_bad_triangles(const Surface& surface, std::vector<Finding>& findings);
 /// @par Cost  O(n log n + pairs of overlapping boxes)
 void find_intersections(const Surface& surface, std::vector<Finding>& findings, Context& context);
 
+/// @brief "degenerate_curves", "curves_through_facets", "crossing_curves", "points_on_facets", "points_on_curves":
+/// errors, exact. Ids: edges of curves counted through from 0, vertices for points, faces of the input.
+/// @par Cost  O(n log n + pairs of overlapping boxes); nothing without curves and points
+void find_curve_defects(const Surface& surface, std::vector<Finding>& findings, Context& context);
+
 /// @brief "open_edges": an error where the surface encloses nothing, else a warning; "encloses_nothing": an error.
 /// @param shells  null where other errors forbid to compute them: then peeling decides
 /// @return whether the surface encloses a region

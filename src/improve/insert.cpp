@@ -83,6 +83,15 @@ bool LocalOperations::is_far_from_hole(const Point& p, double bound, double of_l
   });
 }
 
+bool LocalOperations::keeps_edges() const {
+  return !c_.loses_kept_edge(cavity_, [this](VertexIndex a, VertexIndex b) {
+    return std::any_of(hole_.begin(), hole_.end(), [&](const HoleFace& face) {
+      const auto n = c_.face_nodes(face.ref);
+      return std::find(n.begin(), n.end(), a) != n.end() && std::find(n.begin(), n.end(), b) != n.end();
+    });
+  });
+}
+
 bool LocalOperations::keeps_boundary_vertices() {
   candidates_.clear();
   for (const HoleFace& face : hole_) {
@@ -139,7 +148,7 @@ bool LocalOperations::try_point(Point p, double bound, double enough) {
     const auto n = c_.face_nodes(face.ref);
     return orient3d(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), p) > 0;
   };
-  if (worst > bound && is_far_from_hole(p, bound, 1) && keeps_boundary_vertices() &&
+  if (worst > bound && is_far_from_hole(p, bound, 1) && keeps_boundary_vertices() && keeps_edges() &&
       std::all_of(hole_.begin(), hole_.end(), is_positive)) {
     commit_insertion(p);
     return true;
@@ -165,6 +174,7 @@ Point LocalOperations::measure_inwards() const {
 /// boundary and the tet is urgent: from places off it, since no cavity can be grown from a place in it.
 bool LocalOperations::insert_at_edge(TetIndex t, const std::uint8_t* e, double bound, double enough) {
   const VertexIndex a = c_.node[4 * t + e[0]], b = c_.node[4 * t + e[1]];
+  if (c_.keeps_edge(a, b)) return false;
   const Point middle = 0.5 * (c_.point(a) + c_.point(b));
   const double reach = distance(c_.point(a), c_.point(b));
   c_.edge_ring(t, a, b, star_);

@@ -27,7 +27,8 @@ double optimise_point(const FaceBatch& faces, Point& p, double enough, SmoothScr
 ///
 /// Each returns whether it changed the complex, and then leaves the tets it made or reshaped in `touched`. A change is
 /// made only where the worst quality of what is replaced rises by kGain, which bounds the number of changes; new tets
-/// are positive by the exact predicate. Nothing here crosses a constrained face or moves a boundary vertex.
+/// are positive by the exact predicate. Nothing here crosses a constrained face, takes a kept edge away or moves a
+/// boundary vertex.
 class LocalOperations {
  public:
   explicit LocalOperations(TetComplex& complex) : c_(complex), flips_(complex) {}
@@ -73,6 +74,7 @@ class LocalOperations {
   bool try_point(Point p, double bound, double enough);
   bool is_far_from_hole(const Point& p, double bound, double of_least) const;
   bool keeps_boundary_vertices();
+  bool keeps_edges() const;
   void clear_cavity();
   void commit_insertion(const Point& p);
 

@@ -107,6 +107,13 @@ void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::
                                 fmt::join(kinds, ", ")));
 }
 
+void note_left_out_curves(const Mesh& mesh, const char* format, std::vector<std::string>& notes) {
+  const std::size_t lines = mesh.num_cells(CellType::line), points = mesh.num_cells(CellType::vertex);
+  if (mesh.dimension == 3 && lines + points > 0)
+    notes.push_back(
+        fmt::format("{}: {} line and {} vertex cells are left out; VTU and MSH keep them", format, lines, points));
+}
+
 void TagGroups::name(int dimension, std::int64_t tag, const std::string& name, const std::string& kind) {
   Group& group = mesh_.groups[(*this)(dimension, tag)];
   group.name = name;
@@ -134,7 +141,7 @@ GroupId TagGroups::by_marker(int dimension, std::int64_t marker) {
 
 GroupId NamedPatches::operator()(std::string_view name) {
   const auto [it, is_new] = groups_.try_emplace(std::string(name), mesh_.groups.size());
-  if (is_new) mesh_.groups.push_back({it->first, 2, "", false});
+  if (is_new) mesh_.groups.push_back({it->first, dimension_, "", false});
   return it->second;
 }
 

@@ -51,6 +51,9 @@ void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std:
 void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::string>& notes,
                          std::span<const char* const> keeps = {});
 
+/// @brief A sentence where a mesh in space has lines or vertex cells, for formats that cannot hold them.
+void note_left_out_curves(const Mesh& mesh, const char* format, std::vector<std::string>& notes);
+
 /// @brief Hands out groups by a file's integer tag: one group a (dimension, tag), named when the name is known.
 class TagGroups {
  public:
@@ -73,14 +76,15 @@ class TagGroups {
   std::array<Entry, 4> last_{};  // the one asked for last: tags come in runs
 };
 
-/// @brief Like mesh.add_group(2, name), for files with very many names.
+/// @brief Like mesh.add_group(dimension, name), for files with very many names.
 class NamedPatches {
  public:
-  explicit NamedPatches(Mesh& mesh) : mesh_(mesh) {}
+  explicit NamedPatches(Mesh& mesh, int dimension = 2) : mesh_(mesh), dimension_(dimension) {}
   GroupId operator()(std::string_view name);
 
  private:
   Mesh& mesh_;
+  int dimension_;
   std::unordered_map<std::string, GroupId> groups_;
 };
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Medit (.mesh, ASCII), as MMG, TetGen and libMeshb write it. References become groups named by the comments that
 // write_medit leaves ("#delfront <dimension> <reference> <sides> <kind or -> <name>"), else "patch_<ref>",
-// "region_<ref>". Keywords that say nothing about the mesh here (corners, ridges, normals, …) are skipped.
+// "region_<ref>". Corners and required vertices become
+// vertex cells. Keywords that say nothing about the mesh here (ridges, normals, …) are skipped.
 #include <fmt/format.h>
 
 #include <charconv>
+#include <set>
 
 #include "delfront/errors.hpp"
 #include "io/cells.hpp"
@@ -50,6 +52,8 @@ class MeditReader {
       mesh_.dimension = dimension_;
     } else if (word == "Vertices") {
       read_vertices();
+    } else if (word == "Corners" || word == "RequiredVertices") {
+      read_points();
     } else if (const Keyword* keyword = find(word)) {
       read_cells(keyword->type);
     } else {
@@ -101,6 +105,15 @@ class MeditReader {
     }
   }
 
+  /// A vertex may be both a corner and required.
+  void read_points() {
+    const std::size_t n = cursor_.count("number of vertices", 2);
+    for (std::size_t i = 0; i < n; ++i) {
+      const VertexId v(static_cast<std::size_t>(cursor_.integer_in("vertex", 1, Id<VertexTag>::kNone) - 1));
+      if (is_point_.insert(v).second) add_cell(mesh_, CellType::vertex, {&v, 1}, GroupId());
+    }
+  }
+
   /// At the end, since cells may stand before the vertices.
   void check_indices() const {
     for (const CellBlock& block : mesh_.blocks)
@@ -136,6 +149,7 @@ class MeditReader {
   Mesh mesh_;
   TagGroups groups_;
   int dimension_ = 3;
+  std::set<VertexId> is_point_;
 };
 
 }  // namespace

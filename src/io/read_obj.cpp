@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: vertices and polygons; texture and normal indices are skipped. A face's patch is named by its group
-// (g), object (o) or material (usemtl): the first of these that tells faces apart, else the first that is there.
+// Wavefront OBJ: vertices, polygons, lines (l) and points (p); texture and normal indices are skipped. A face's patch
+// is named by its group (g), object (o) or material (usemtl): the first of these that tells faces apart, else the first
+// that is there; lines and points go by the same.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "delfront/errors.hpp"
@@ -36,8 +38,10 @@ class ObjReader {
     if (max_index_ >= static_cast<std::int64_t>(mesh_.points.size()))
       cursor_.fail_at(max_index_at_, fmt::format("vertex {} is out of range: the file has {} vertices", max_index_ + 1,
                                                  mesh_.points.size()));
-    if (offsets_.size() == 1) throw InputError(fmt::format("{}: the OBJ file has no faces (f lines)", cursor_.path()));
+    if (offsets_.size() == 1 && embedded_.empty())
+      throw InputError(fmt::format("{}: the OBJ file has no faces (f lines)", cursor_.path()));
     add_faces();
+    add_embedded();
     check_finite(mesh_, cursor_.path());
     return std::move(mesh_);
   }
@@ -49,6 +53,8 @@ class ObjReader {
       take_vertex();
     } else if (word == "f" || word == "fo") {
       take_face();
+    } else if (word == "l" || word == "p") {
+      take_line_or_points(word == "l");
     } else if (word == "g") {
       begin_run(0);
     } else if (word == "o") {
@@ -56,7 +62,7 @@ class ObjReader {
     } else if (word == "usemtl") {
       begin_run(2);
     } else {
-      cursor_.skip_line();  // vt, vn, s, l, p, mtllib and what programs add
+      cursor_.skip_line();  // vt, vn, s, mtllib and what programs add
     }
   }
 
@@ -90,6 +96,16 @@ class ObjReader {
       cursor_.fail_at(begin,
                       fmt::format("a face needs three corners or more, this has {}", corners_.size() - num_before));
     offsets_.push_back(corners_.size());
+  }
+
+  void take_line_or_points(bool is_line) {
+    const std::size_t begin = cursor_.position();
+    std::vector<VertexId> vertices;
+    for (std::string_view token = next_corner(); !token.empty(); token = next_corner())
+      vertices.push_back(corner(token));
+    if (is_line && vertices.size() < 2)
+      cursor_.fail_at(begin, fmt::format("a line needs two vertices or more, this has {}", vertices.size()));
+    embedded_.push_back({is_line, std::move(vertices), runs_.back().names});
   }
 
   VertexId corner(std::string_view token) {
@@ -158,9 +174,30 @@ class ObjReader {
     }
   }
 
+  void add_embedded() {
+    const std::size_t label = choose_label();
+    NamedPatches curves(mesh_, 1), points(mesh_, 0);
+    for (const auto& [is_line, vertices, names] : embedded_) {
+      const auto named = std::find_if(names.begin(), names.end(), [](std::string_view name) { return !name.empty(); });
+      const std::string_view name = !names[label].empty() || named == names.end() ? names[label] : *named;
+      GroupId group;
+      if (!name.empty()) group = is_line ? curves(name) : points(name);
+      for (std::size_t k = 0; k + (is_line ? 1 : 0) < vertices.size(); ++k)
+        add_cell(mesh_, is_line ? CellType::line : CellType::vertex, {&vertices[k], is_line ? 2u : 1u}, group);
+    }
+  }
+
+  /// Lines or points of one statement.
+  struct Embedded {
+    bool is_line;
+    std::vector<VertexId> vertices;
+    std::array<std::string_view, kNumLabels> names;
+  };
+
   Cursor cursor_;
   Context& context_;
   Mesh mesh_;
+  std::vector<Embedded> embedded_;
   std::vector<Run> runs_;
   std::vector<VertexId> corners_;
   std::vector<std::size_t> offsets_;

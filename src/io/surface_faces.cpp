@@ -66,6 +66,7 @@ SurfaceFaces::SurfaceFaces(const Mesh& mesh, const char* format, std::vector<std
     notes.push_back(fmt::format("{}: {} volume cells are left out, faces only are written", format, volumes));
   note_left_out_fields(mesh, format, notes);
   note_left_out_kinds(mesh, format, notes);
+  note_left_out_curves(mesh, format, notes);
   if (volumes == 0) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i) points_.push_back(VertexId(i));
     return;

@@ -15,6 +15,8 @@ namespace {
 
 const char* keyword(CellType type) {
   switch (type) {
+    case CellType::vertex:
+      return "RequiredVertices";
     case CellType::line:
       return "Edges";
     case CellType::triangle:
@@ -52,8 +54,10 @@ void write_block(Output& out, const CellBlock& block, const std::vector<std::int
       out.integer(static_cast<std::int64_t>(v.index()) + 1);
       out.character(' ');
     }
-    const std::int64_t group = group_of(block, cell);
-    out.integer(group < 0 ? 0 : number[static_cast<std::size_t>(group)] + 1);
+    if (block.type != CellType::vertex) {  // which have no reference
+      const std::int64_t group = group_of(block, cell);
+      out.integer(group < 0 ? 0 : number[static_cast<std::size_t>(group)] + 1);
+    }
     out.character('\n');
   }
 }
@@ -63,12 +67,13 @@ void write_block(Output& out, const CellBlock& block, const std::vector<std::int
 void write_medit(const Mesh& mesh, Output& out, const WriteOptions&, Context& context,
                  std::vector<std::string>& notes) {
   note_left_out_fields(mesh, "Medit", notes);
+  for (const Group& group : mesh.groups)
+    if (group.dimension == 0)
+      notes.push_back(fmt::format("Medit: the name of the points '{}' is left out", group.name));
   for (const CellBlock& block : mesh.blocks) {
     if (block.size() == 0 || keyword(block.type)) continue;
-    if (block.type != CellType::vertex)
-      throw InputError(fmt::format("Medit cannot hold {} {} cells; write VTU, or triangulate them first", block.size(),
-                                   name_of(block.type)));
-    notes.push_back(fmt::format("Medit: {} vertex cells are left out", block.size()));
+    throw InputError(fmt::format("Medit cannot hold {} {} cells; write VTU, or triangulate them first", block.size(),
+                                 name_of(block.type)));
   }
   const std::vector<std::string> names = fit_names(mesh, NameRule::line, "Medit", notes);
   const std::vector<std::int32_t> number = number_groups_by_dimension(mesh);

@@ -71,6 +71,7 @@ class FoamWriter {
       notes.push_back(fmt::format("OpenFOAM: {} faces that bound no cell are left out", faces_.num_loose));
     note_left_out_fields(mesh, "OpenFOAM", notes);
     note_left_out_kinds(mesh, "OpenFOAM", notes, kKinds);
+    note_left_out_curves(mesh, "OpenFOAM", notes);
   }
 
   void write(const std::string& folder, const std::string& shown) {

@@ -117,6 +117,7 @@ void write_su2(const Mesh& mesh, Output& out, const WriteOptions&, Context& cont
   check_cells(mesh);
   note_left_out_fields(mesh, "SU2", notes);
   note_left_out_kinds(mesh, "SU2", notes);
+  note_left_out_curves(mesh, "SU2", notes);
   const std::vector<Marker> markers = make_markers(mesh, notes);
   write_elements(out, mesh);
   write_points(out, mesh);

@@ -50,6 +50,7 @@ constexpr Kind kKinds[] = {
      "store each face that has one cell"},
     {"repeated_boundary_facets", Severity::error, "faces that are stored more than once", "store each face once"},
     {"loose_facets", Severity::error, "stored faces that no cell has", "drop them, or grid again"},
+    {"loose_lines", Severity::error, "lines that are no edge of a cell", "drop them, or grid again"},
     {"turned_boundary_facets", Severity::warning, "stored boundary faces that point inwards",
      "turn their vertices round"},
     {"open_boundary", Severity::error, "edges at which the boundary ends", "grid again"},
@@ -117,6 +118,7 @@ class Checker {
   void check_facets(const FacetSweep& sweep, std::size_t bin, FacetSweep::Scratch& scratch);
   void check_facet(std::span<const HalfFacet> sides, std::span<const HalfFacet> stored);
   void check_boundary_edges();
+  void check_lines();
 
   Place point_place(std::size_t point) const;
   Place cell_place(std::span<const VertexId> vertices, std::size_t cell) const;
@@ -140,6 +142,7 @@ std::vector<Finding> Checker::run() {
   check_cells();
   // A surface in space is check_surface's business: here its edges may have any number of faces.
   if (dimension_ == 3 || is_plane()) check_facets();
+  if (dimension_ == 3) check_lines();
   return findings_.take();
 }
 
@@ -328,6 +331,34 @@ void Checker::check_facet(std::span<const HalfFacet> sides, std::span<const Half
     const std::uint32_t u = vertices[facet.vertices[i]].value;
     const std::uint32_t v = vertices[facet.vertices[(i + 1) % facet.num_vertices]].value;
     boundary_edges_.push_back(std::minmax(u, v));
+  }
+}
+
+/// Lines that no cell has among its edges. Only cells with two vertices on lines are looked at.
+void Checker::check_lines() {
+  const CellBlock* lines = mesh_.find_block(CellType::line);
+  if (!lines || lines->size() == 0) return;
+  std::vector<bool> is_end(mesh_.points.size(), false);
+  for (const VertexId v : lines->vertices) is_end[v.index()] = true;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const CellRange::Part& part : cells_.parts()) {
+    if (num_vertices(part.block->type) == 0) return;  // said as unchecked_cells
+    const CellShape& shape = shape_of(part.block->type);
+    for (std::size_t cell = 0; cell < part.block->size(); ++cell) {
+      const auto vertices = (*part.block)[cell];
+      for (int e = 0; e < shape.num_edges; ++e) {
+        const std::uint32_t u = vertices[shape.edges[e][0]].value, v = vertices[shape.edges[e][1]].value;
+        if (is_end[u] && is_end[v]) edges.push_back(std::minmax(u, v));
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    const auto ends = (*lines)[i];
+    const std::pair<std::uint32_t, std::uint32_t> edge = std::minmax(ends[0].value, ends[1].value);
+    if (!std::binary_search(edges.begin(), edges.end(), edge))
+      findings_.add("loose_lines",
+                    {0.5 * (mesh_.points[ends[0]] + mesh_.points[ends[1]]), {ends[0].value, ends[1].value}});
   }
 }
 

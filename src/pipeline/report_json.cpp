@@ -81,8 +81,17 @@ Json left_json(const RecoveryReport& r) {
 }
 
 Json to_json(const RecoveryReport& r) {
-  return {{"missing_edges", r.missing_edges}, {"missing_faces", r.missing_faces}, {"steiner_points", r.steiner_points},
-          {"steiner_moved", r.steiner_moved}, {"steiner_left", r.steiner_left},   {"left", left_json(r)}};
+  return {{"missing_edges", r.missing_edges},
+          {"missing_faces", r.missing_faces},
+          {"steiner_points", r.steiner_points},
+          {"steiner_moved", r.steiner_moved},
+          {"steiner_left", r.steiner_left},
+          {"curve_edges", r.curve_edges},
+          {"curve_edges_inside", r.curve_edges_inside},
+          {"curve_edges_split", r.curve_edges_split},
+          {"curve_points_left", r.curve_points_left},
+          {"embedded_points", r.embedded_points},
+          {"left", left_json(r)}};
 }
 
 Json to_json(const KernelCounts& k) {
@@ -262,6 +271,8 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"quality", to_json(result.report.quality)},
       {"boundaries", groups_json(result.mesh, 2)},
       {"regions", groups_json(result.mesh, 3)},
+      {"curves", result.mesh.dimension == 3 ? groups_json(result.mesh, 1) : Json::array()},
+      {"points", groups_json(result.mesh, 0)},
       {"failed_gates", result.failed_gates},
       {"files_written", result.files_written},
       {"defects_file", result.defects_file},

@@ -85,6 +85,10 @@ std::string TetComplex::find_defect() const {
   }
   for (VertexIndex v = 0; v < num_vertices(); ++v)
     if (std::string defect = find_vertex_defect(*this, v); !defect.empty()) return defect;
+  std::vector<TetIndex> scratch;
+  for (const auto& [a, b] : kept_edges.sorted())
+    if (!on_boundary[a] || !on_boundary[b] || vertex_tet[a] == kNoIndex || find_edge(a, b, scratch) == kNoIndex)
+      return fmt::format("the kept edge {} {} is not there, or its ends may move", a, b);
   return {};
 }
 

@@ -16,6 +16,7 @@ constexpr int kMaxDepth = 4;  // faces removed beyond the first one, along one b
 bool Flips::collect_ring(TetIndex t, VertexIndex a, VertexIndex b) {
   ring_.clear();
   ring_vertex_.clear();
+  if (c_.keeps_edge(a, b)) return false;
   const std::uint8_t* other = kOtherNodes[c_.local_index(t, a)][c_.local_index(t, b)];
   unsigned leave = other[0];
   VertexIndex behind = c_.node[4 * t + other[0]], ahead = c_.node[4 * t + other[1]];
@@ -107,6 +108,7 @@ double Flips::replace_face_edge(FaceRef below, FaceRef above, VertexIndex p, Ver
   const FaceRef under = c_.neigh[below], over = c_.neigh[above];
   const VertexIndex w = c_.node[under];
   if (w != c_.node[over] || w == kGhost || c_.is_constrained(below) || c_.is_constrained(above)) return alone;
+  if (c_.keeps_edge(p, q)) return alone;
   const TetIndex lower = under >> 2, upper = over >> 2;
   const FaceRef between = 4 * lower + static_cast<unsigned>(c_.local_index(lower, bottom));
   if (c_.neigh[between] >> 2 != upper || c_.is_constrained(between)) return alone;

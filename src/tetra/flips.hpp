@@ -17,9 +17,9 @@ struct Retriangulation {
 
 /// @brief Exchanges of faces and edges without points: 2-3, 3-2, 4-4 and their larger kin.
 ///
-/// Constrained faces, the edges on them, ghosts and tets of other regions are never part of a plan. A plan changes
-/// nothing; commit() does, after an exact test of every new tet. All new tets positive, with the hole's boundary kept
-/// and the sense of the ring fixed by the old tets, is enough for them to fill the hole without overlap.
+/// Constrained faces, the edges on them, kept edges, ghosts and tets of other regions are never part of a plan. A plan
+/// changes nothing; commit() does, after an exact test of every new tet. All new tets positive, with the hole's
+/// boundary kept and the sense of the ring fixed by the old tets, is enough for them to fill the hole without overlap.
 class Flips {
  public:
   explicit Flips(TetComplex& complex) : c_(complex) {}

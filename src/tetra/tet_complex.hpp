@@ -11,6 +11,7 @@
 #include "base/hilbert.hpp"
 #include "delfront/point.hpp"
 #include "predicates/predicates.hpp"
+#include "tetra/edge_set.hpp"
 
 namespace delfront {
 
@@ -90,6 +91,10 @@ class TetComplex {
   FlatArray<std::uint8_t> on_boundary;    ///< 1 a vertex: 1 where it is a vertex of the given boundary and may not move
   /// Steiner points on boundary segments, held exactly until boundary recovery ends; empty afterwards.
   std::unordered_map<VertexIndex, ExactPoint> segment_points;
+  /// Edges inside of regions that must stay: those of embedded curves. Both ends have on_boundary. Edges of constrained
+  /// faces need not be here, since the faces hold them. What takes edges away asks keeps_edge(); what only fills the
+  /// star of one free vertex again need not, since all edges that could be kept lie on the border of the star.
+  EdgeSet kept_edges;
 
   static constexpr std::uint32_t kOutside = 0xffffffffu;
   static constexpr std::size_t kMaxSlots = std::size_t{1} << 30;  ///< what a FaceRef of 32 bits can tell apart
@@ -99,6 +104,21 @@ class TetComplex {
   std::size_t num_vertices() const { return vertex.size(); }
   bool is_dead(TetIndex t) const { return flag[t] & dead; }
   bool is_ghost(TetIndex t) const { return node[4 * t + 3] == kGhost; }
+  bool keeps_edge(VertexIndex a, VertexIndex b) const {
+    return !kept_edges.empty() && a != kGhost && b != kGhost && on_boundary[a] && on_boundary[b] &&
+           kept_edges.has(a, b);
+  }
+  /// @brief Whether one of the kept edges of these tets is no edge of the faces that `has_edge(a, b)` knows.
+  template <class HasEdge>
+  bool loses_kept_edge(std::span<const TetIndex> tets, HasEdge&& has_edge) const {
+    if (kept_edges.empty()) return false;
+    for (const TetIndex t : tets)
+      for (const auto& e : kEdgeNodes) {
+        const VertexIndex a = node[4 * t + e[0]], b = node[4 * t + e[1]];
+        if (keeps_edge(a, b) && !has_edge(a, b)) return true;
+      }
+    return false;
+  }
   bool is_constrained(FaceRef ref) const { return (flag[ref >> 2] >> (ref & 3)) & 1; }
   void set_constrained(FaceRef ref, bool on) {
     const std::uint16_t bit = static_cast<std::uint16_t>(1u << (ref & 3));

@@ -95,6 +95,17 @@ class Core {
         vertex_of_triangle_.push_back(n[0]);
       }
     }
+    for (const auto& [a, b] : c_.kept_edges.sorted()) {  // in parts, since the box of a slanting edge is large
+      const Point from = c_.point(a), to = c_.point(b);
+      const double parts = std::clamp(std::ceil(distance(from, to) / h_), 1.0, kMostParts);
+      for (double k = 0; k < parts; ++k) {
+        Box box;
+        box.add(from + (k / parts) * (to - from));
+        box.add(from + ((k + 1) / parts) * (to - from));
+        triangles.push_back(box);
+        vertex_of_triangle_.push_back(a);
+      }
+    }
     boundary_ = Bvh(triangles);
   }
 
@@ -202,6 +213,7 @@ class Core {
   }
 
   static constexpr std::uint64_t kMaxSteps = 1000;
+  static constexpr double kMostParts = 1e4;  ///< of a kept edge
 
   TetComplex& c_;
   const SizeField& size_;

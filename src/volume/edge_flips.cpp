@@ -14,16 +14,8 @@ constexpr std::size_t kMaxRing = 40;        ///< tets around an edge that is swi
 constexpr std::size_t kMaxVisited = 20000;  ///< tets looked at beyond the star of one end
 }  // namespace
 
-RequiredEdges::RequiredEdges(const Segments& segments) {
-  edges_.reserve(segments.ends.size() + segments.steiner_edge.size());
-  std::vector<VertexIndex> along;
-  for (std::uint32_t e = 0; e < segments.ends.size(); ++e) {
-    segments.vertices_along(e, false, along);
-    for (std::size_t i = 0; i + 1 < along.size(); ++i) edges_.insert(key(along[i], along[i + 1]));
-  }
-}
-
-bool EdgeFlips::recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat) {
+bool EdgeFlips::recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat, std::size_t most_fills) {
+  fills_left_ = most_fills;
   sideways_ = kMaxSideways;
   std::size_t most = kMaxSwitches;
   for (std::size_t k = 0; k < most; ++k) {
@@ -45,7 +37,7 @@ bool EdgeFlips::switch_diagonal(VertexIndex a, VertexIndex b, const std::vector<
     const Obstacle& at = tried_[(first + k) % before];
     for (int e = 0; e < (at.is_edge ? 1 : 3); ++e) {
       const VertexIndex p = at.node[e], q = at.node[(e + 1) % 3];
-      if (!is_flat(p) || !is_flat(q) || required_.has(p, q) || !collect_ring(at.ref >> 2, p, q)) continue;
+      if (!is_flat(p) || !is_flat(q) || !collect_ring(at.ref >> 2, p, q)) continue;
       std::vector<VertexIndex> others;
       for (const VertexIndex v : polygon_)
         if (is_flat(v)) others.push_back(v);
@@ -220,6 +212,7 @@ bool EdgeFlips::switch_face(const Obstacle& at) {
 
 /// The vertices around edge (p, q), turning by the right-hand rule from p to q, into polygon_.
 bool EdgeFlips::collect_ring(TetIndex t, VertexIndex p, VertexIndex q) {
+  if (required_.has(p, q)) return false;
   c_.edge_ring(t, p, q, ring_);
   const std::size_t n = ring_.size();
   if (n > kMaxRing || n < 3) return false;
@@ -301,6 +294,8 @@ bool EdgeFlips::switch_edge(TetIndex t, VertexIndex p, VertexIndex q, VertexInde
 
 /// Fills the part of the ring between its vertices i and j with tets from a new point, near where the diagonals cross.
 bool EdgeFlips::fill_half_from_point(VertexIndex p, VertexIndex q, std::size_t i, std::size_t j) {
+  if (fills_left_ == 0) return false;
+  --fills_left_;
   const VertexIndex u = polygon_[i], w = polygon_[j];
   std::vector<std::array<VertexIndex, 3>> faces = {{u, w, q}, {u, p, w}};
   const Point from = c_.point(p), to = c_.point(q);

@@ -2,27 +2,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <unordered_set>
+#include <limits>
 #include <vector>
 
 #include "delfront/context.hpp"
 #include "tetra/tet_complex.hpp"
-#include "volume/segments.hpp"
 
 namespace delfront {
-
-/// @brief The pieces of the model's edges: what flips and refilled cavities must not lose.
-class RequiredEdges {
- public:
-  explicit RequiredEdges(const Segments& segments);
-  bool has(VertexIndex a, VertexIndex b) const { return edges_.contains(key(a, b)); }
-
- private:
-  static std::uint64_t key(VertexIndex a, VertexIndex b) {
-    return static_cast<std::uint64_t>(a < b ? a : b) << 32 | (a < b ? b : a);
-  }
-  std::unordered_set<std::uint64_t> edges_;
-};
 
 /// @brief Make (a, b) an edge by switching what lies in its way: faces (2-3) and edges, any of which the segment cuts.
 ///
@@ -33,10 +19,13 @@ class RequiredEdges {
 /// @par Source  George, Borouchaki & Saltel (2003); Si (2015), section 4
 class EdgeFlips {
  public:
-  EdgeFlips(TetComplex& complex, const RequiredEdges& required) : c_(complex), required_(required) {}
+  static constexpr std::size_t kAnyNumber = std::numeric_limits<std::size_t>::max();
+
+  EdgeFlips(TetComplex& complex, const EdgeSet& required) : c_(complex), required_(required) {}
 
   /// @param flat  one a vertex: whether it lies in the flat part of the surface that (a, b) runs through
-  bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat);
+  /// @param most_fills  times that a place for a point is looked for, which takes longer than all else
+  bool recover(VertexIndex a, VertexIndex b, const std::vector<bool>& flat, std::size_t most_fills = kAnyNumber);
 
   /// @brief Switch faces that are not locally Delaunay (2-3, 3-2, 4-4 where flat), until none is left that can be.
   ///
@@ -68,9 +57,10 @@ class EdgeFlips {
   void replace(const std::vector<TetIndex>& old_tets);
 
   TetComplex& c_;
-  const RequiredEdges& required_;
+  const EdgeSet& required_;
   std::vector<Obstacle> obstacles_, tried_;
   bool may_add_points_ = false;
+  std::size_t fills_left_ = kAnyNumber;
   int sideways_ = 0;  ///< switches left that may leave as much in the way as before
   std::vector<TetIndex> ring_, scratch_, visited_, new_tets_;
   std::vector<VertexIndex> polygon_;

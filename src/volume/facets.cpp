@@ -23,7 +23,7 @@ Face sorted(Face f) {
 
 class FacetRecovery {
  public:
-  FacetRecovery(TetComplex& complex, const Model& model, const Segments& segments, const RequiredEdges& required)
+  FacetRecovery(TetComplex& complex, const Model& model, const Segments& segments, const EdgeSet& required)
       : c_(complex), model_(model), segments_(segments), required_(required) {}
 
   std::size_t num_missing = 0;
@@ -334,7 +334,7 @@ class FacetRecovery {
   TetComplex& c_;
   const Model& model_;
   const Segments& segments_;
-  const RequiredEdges& required_;
+  const EdgeSet& required_;
   Face corner_{};
   VertexIndex apex_ = kNoIndex;
   std::vector<VertexIndex> outline_, along_, global_;
@@ -350,7 +350,7 @@ class FacetRecovery {
 }  // namespace
 
 std::vector<TriangleId> recover_facets(TetComplex& complex, const Model& model, const Segments& segments,
-                                       const RequiredEdges& required, std::vector<Subface>& subfaces,
+                                       const EdgeSet& required, std::vector<Subface>& subfaces,
                                        std::size_t& num_missing, Context& context) {
   FacetRecovery recovery(complex, model, segments, required);
   std::vector<TriangleId> failed;

@@ -17,13 +17,13 @@ namespace delfront {
 /// @brief Make every triangle of the model a union of constrained faces, all of its edges being there already.
 ///
 /// The tets that a missing triangle cuts are taken out; what is above and what is below it is filled again by gift
-/// wrapping, each as its constrained Delaunay tetrahedrization. Required edges stay.
+/// wrapping, each as its constrained Delaunay tetrahedrization. Required edges stay, other ones may go.
 /// @param[out] subfaces  the faces that make up the triangles
 /// @return the triangles for which that did not succeed (rounding never matters; only a neighbour recovered earlier
 /// can)
 /// @par Source  Si & Gärtner (2005); Shewchuk (2000) for the existence; Diazzi et al. (2023)
 std::vector<TriangleId> recover_facets(TetComplex& complex, const Model& model, const Segments& segments,
-                                       const RequiredEdges& required, std::vector<Subface>& subfaces,
+                                       const EdgeSet& required, std::vector<Subface>& subfaces,
                                        std::size_t& num_missing, Context& context);
 
 /// @brief Fill a closed polyhedron with its constrained Delaunay tetrahedra, no new points.

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "delaunay/delaunay.hpp"
+#include "volume/curve_points.hpp"
 #include "volume/edge_flips.hpp"
 #include "volume/facets.hpp"
 #include "volume/partial.hpp"
@@ -64,6 +65,16 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
       places);
 }
 
+[[noreturn]] void fail_at_curves(const Model& model) {
+  const Point at = model.points[model.curves[CurveId(0)].vertices[0]];
+  throw MeshingError(
+      fmt::format("boundary recovery: the embedded curves could not be recovered between the facets, the "
+                  "first of them from ({:g}, {:g}, {:g}); give the edges more points where they come "
+                  "close to others",
+                  at.x, at.y, at.z),
+      {{at, {}}});
+}
+
 /// Triangles that lie (nearly) in one plane and hang together; only a guide for the order of trials, so a tolerance
 /// will do.
 class FlatParts {
@@ -86,6 +97,7 @@ class FlatParts {
 
   /// @return by vertex: in the part of one of the edge's triangles; Steiner points on its edges too
   const std::vector<bool>& mark(std::uint32_t edge) {
+    if (first_[edge] == kNoIndex) return nothing_;  // of a curve
     const std::uint32_t part = part_[first_[edge]];
     if (part == marked_part_) return is_flat_;
     is_flat_.resize(segments_.first_steiner + segments_.steiner_edge.size(), false);
@@ -126,11 +138,12 @@ class FlatParts {
   std::uint32_t marked_part_ = kNoIndex;  ///< which is_flat_ is of
   std::vector<VertexIndex> marked_;
   std::vector<bool> is_flat_;
+  const std::vector<bool> nothing_;
 };
 
 /// Switches what lies in the way of missing edges; plans a split of those that stay missing.
 /// @return whether all edges are there
-bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments, const RequiredEdges& required,
+bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments, const EdgeSet& required,
                      RecoveryReport& report, Context& context) {
   const std::vector<Piece> missing = find_missing_pieces(complex, segments, nullptr, context);
   if (segments.steiner_edge.empty()) report.missing_edges = missing.size();
@@ -145,26 +158,53 @@ bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments
   return hard.empty();
 }
 
+/// Refilled cavities of facets take curves away; between the facets they come back by switches.
+/// @return whether all of them are there; a split of those that stay missing is planned
+bool switch_to_curves(TetComplex& complex, const Model& model, Segments& segments, const EdgeSet& required,
+                      Context& context) {
+  std::vector<Piece> missing;
+  std::vector<VertexIndex> along;
+  std::vector<TetIndex> scratch;
+  for (auto e = static_cast<std::uint32_t>(segments.num_surface_edges); e < segments.ends.size(); ++e) {
+    segments.vertices_along(e, false, along);
+    for (std::size_t i = 0; i + 1 < along.size(); ++i)
+      if (complex.find_edge(along[i], along[i + 1], scratch) == kNoIndex)
+        missing.push_back({e, along[i], along[i + 1]});
+  }
+  EdgeFlips flips(complex, required);
+  bool all_there = true;
+  for (const Piece& piece : missing) {
+    context.check_limits();
+    if (flips.recover(piece.low, piece.high, {})) continue;
+    plan_split(model, segments, piece);
+    all_there = false;
+  }
+  return all_there;
+}
+
 /// The complex with all facets in it. Edges and facets that resist get points on their edges, and all starts over.
 void recover_boundary(const Model& model, Segments& segments, TetComplex& complex, std::vector<Subface>& subfaces,
                       RecoveryReport& report, Context& context) {
   std::vector<TriangleId> failed;
+  const bool has_curves = segments.num_surface_edges < segments.ends.size();
   for (int restart = 0; restart < kMaxRestarts; ++restart) {
     complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
     build_delaunay(complex, context);
     insert_chains(complex, kernel, model, segments);
     if (restart >= kMaxRestartsWithFlips) recover_segments(complex, kernel, model, segments, context);
-    const RequiredEdges required(segments);
+    const EdgeSet required = pieces_of_edges(segments);
     if (!switch_to_edges(complex, model, segments, required, report, context)) continue;
     subfaces.clear();
     std::size_t num_missing = 0;
-    failed = recover_facets(complex, model, segments, required, subfaces, num_missing, context);
+    failed = recover_facets(complex, model, segments, has_curves ? pieces_of_edges(segments, true) : required, subfaces,
+                            num_missing, context);
     if (restart == 0 || report.missing_faces == 0) report.missing_faces = num_missing;
-    if (failed.empty()) return;
+    if (failed.empty() && (!has_curves || switch_to_curves(complex, model, segments, required, context))) return;
     for (const TriangleId t : failed)
       for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
   }
+  if (failed.empty()) fail_at_curves(model);
   fail_at_facets(model, failed);
 }
 
@@ -185,6 +225,9 @@ std::vector<SplitTriangle> find_split_triangles(const Segments& segments) {
 }
 
 void warn_of_split(const BoundaryGrid& grid, const RecoveryReport& report, Context& context) {
+  if (report.curve_edges_split > 0)
+    context.warn(fmt::format("{} edges of curves are divided into collinear pieces: {} points stay on curves inside",
+                             report.curve_edges_split, report.curve_points_left));
   if (report.steiner_left == 0) return;
   const Point at = report.left.empty() ? Point{} : report.left[0].at;
   context.log(LogLevel::warning,
@@ -246,10 +289,12 @@ void try_boundary(const Model& model, const std::array<double, 3>& factor, std::
   const std::vector<bool> keep = choose_regions(grid.complex, facts, domain);
   grid.num_regions = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), true));
   strip_outside(grid.complex, keep);
+  keep_curve_edges(grid.complex, segments);
   unsplit_boundary(grid.complex, segments, report, context);
-  const RequiredEdges none{Segments{}};
-  EdgeFlips(grid.complex, none).restore_delaunay(context);
-  if (thin_out(grid.complex, context) > 0) EdgeFlips(grid.complex, none).restore_delaunay(context);
+  const EdgeSet& kept = grid.complex.kept_edges;  // constrained faces hold all other edges that matter
+  EdgeFlips(grid.complex, kept).restore_delaunay(context);
+  if (thin_out(grid.complex, context) > 0) EdgeFlips(grid.complex, kept).restore_delaunay(context);
+  grid.curve_pieces = find_curve_pieces(grid.complex, model, segments, report, context);
   if (report.steiner_left > 0) grid.split = find_split_triangles(segments);
   warn_of_split(grid, report, context);
 }

@@ -16,10 +16,16 @@ struct SplitTriangle {
   std::vector<VertexIndex> outline;
 };
 
+/// @brief An edge of the grid that is a model curve's edge, or a part of one; runs as the curve does.
+struct CurvePiece {
+  VertexIndex a, b;
+};
+
 /// @brief Tets that fill the kept regions; what is not as the model has it stands in `split`.
 struct BoundaryGrid {
   TetComplex complex;
   std::vector<SplitTriangle> split;
+  std::vector<std::vector<CurvePiece>> curve_pieces;  ///< by curve of the model; none for what lies outside
   std::size_t num_regions = 0;
 };
 
@@ -27,7 +33,9 @@ struct BoundaryGrid {
 ///
 /// Vertices 0 … n-1 are the model's points, in order, with the mean length of their edges as size. Every triangle of
 /// the model that bounds a kept region is a face flagged constrained (those in `split`: a union of such faces). Only
-/// tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border. Vertices may be in no tet.
+/// tets of kept regions remain, coloured 0, 1, …; ghosts stand on their border. Vertices may be in no tet. Every edge
+/// of a curve of the model in a kept region is an edge, or a chain of collinear ones, all in complex.kept_edges unless
+/// faces hold them; corners of the model are vertices.
 /// @param[in] is_far_field  one a patch of the model
 /// @pre check_surface(model) finds no error
 /// @throws MeshingError with the places; InputError where no region is kept

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace delfront {
 
@@ -44,6 +45,32 @@ void Segments::neighbours(VertexIndex v, std::vector<VertexIndex>& out) const {
   }
 }
 
+namespace {
+
+/// Appends the edges of curves that no triangle has, in the order of the curves.
+void add_curves(const Model& model, Segments& s) {
+  s.num_surface_edges = s.ends.size();
+  std::map<std::array<VertexIndex, 2>, std::uint32_t> added;
+  for (const Curve& curve : model.curves) {
+    std::vector<std::uint32_t>& steps = s.of_curve.emplace_back();
+    for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
+      const auto [low, high] = std::minmax(curve.vertices[i].value, curve.vertices[i + 1].value);
+      const std::array<VertexIndex, 2> edge{low, high};
+      const auto end = s.ends.begin() + static_cast<std::ptrdiff_t>(s.num_surface_edges);
+      const auto found = std::lower_bound(s.ends.begin(), end, edge);
+      if (found != end && *found == edge) {
+        steps.push_back(static_cast<std::uint32_t>(found - s.ends.begin()));
+        continue;
+      }
+      const auto [at, is_new] = added.try_emplace(edge, static_cast<std::uint32_t>(s.ends.size()));
+      if (is_new) s.ends.push_back(edge);
+      steps.push_back(at->second);
+    }
+  }
+}
+
+}  // namespace
+
 Segments build_segments(const Model& model) {
   Segments s;
   s.num_model_vertices = model.points.size();
@@ -70,6 +97,7 @@ Segments build_segments(const Model& model) {
           {static_cast<VertexIndex>(sides[i].key >> 32), static_cast<VertexIndex>(sides[i].key & 0xffffffffu)});
     s.of_triangle[sides[i].triangle][sides[i].corner] = static_cast<std::uint32_t>(s.ends.size() - 1);
   }
+  add_curves(model, s);
   s.chain.resize(s.ends.size());
   s.most_steiner = kMaxPointsPerEdge * s.ends.size() + 10000;
   s.vertex_offset.assign(s.num_model_vertices + 2, 0);
@@ -81,6 +109,18 @@ Segments build_segments(const Model& model) {
     for (const VertexIndex v : s.ends[e]) s.vertex_edge[s.vertex_offset[v + 1]++] = e;
   s.vertex_offset.pop_back();
   return s;
+}
+
+EdgeSet pieces_of_edges(const Segments& segments, bool of_triangles_only) {
+  EdgeSet pieces;
+  pieces.reserve(segments.ends.size() + segments.steiner_edge.size());
+  const std::size_t end = of_triangles_only ? segments.num_surface_edges : segments.ends.size();
+  std::vector<VertexIndex> along;
+  for (std::uint32_t e = 0; e < end; ++e) {
+    segments.vertices_along(e, false, along);
+    for (std::size_t i = 0; i + 1 < along.size(); ++i) pieces.insert(along[i], along[i + 1]);
+  }
+  return pieces;
 }
 
 namespace {

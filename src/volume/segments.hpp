@@ -12,7 +12,8 @@
 
 namespace delfront {
 
-/// @brief The edges of a model's triangles, each with the Steiner points that split it, in order.
+/// @brief The edges of a model's triangles, then those of its curves that are no edges of triangles, each with the
+/// Steiner points that split it, in order.
 ///
 /// A Steiner point is held exactly, as a + t (b - a) with a, b the edge's ends.
 struct Segments {
@@ -23,6 +24,8 @@ struct Segments {
   std::vector<std::array<VertexIndex, 2>> ends;           ///< one an edge, lower index first
   std::vector<std::vector<Steiner>> chain;                ///< one an edge, by rising t
   std::vector<std::array<std::uint32_t, 3>> of_triangle;  ///< edge k runs from corner k to corner k + 1
+  std::vector<std::vector<std::uint32_t>> of_curve;       ///< by curve and step along it; kNoIndex: not to be kept
+  std::size_t num_surface_edges = 0;                      ///< those of triangles, which come first
   std::vector<std::uint32_t> vertex_offset, vertex_edge;  ///< edges of each model vertex: offsets and values
   std::vector<std::uint32_t> steiner_edge;                ///< edge of Steiner vertex first_steiner + i
   std::size_t num_model_vertices = 0;
@@ -36,6 +39,9 @@ struct Segments {
 };
 
 Segments build_segments(const Model& model);
+
+/// @brief The pieces of all edges of the model, or of its triangles alone: what flips and refilled cavities must keep.
+EdgeSet pieces_of_edges(const Segments& segments, bool of_triangles_only = false);
 
 /// @brief Put the vertices of the chains into the complex again, after it was built anew from the model's vertices.
 void insert_chains(TetComplex& complex, DelaunayKernel& kernel, const Model& model, Segments& segments);

@@ -81,6 +81,8 @@ class Conversion {
     add_tets();
     c_ = TetComplex();
     add_faces();
+    add_curves();
+    add_corners();
     return std::move(mesh_);
   }
 
@@ -216,6 +218,39 @@ class Conversion {
         put_on_patch(mesh_.vertex_entity[new_id_[v]], patch);
       }
     }
+  }
+
+  void add_curves() {
+    for (std::size_t i = 0; i < grid_.curve_pieces.size(); ++i) {
+      if (grid_.curve_pieces[i].empty()) continue;
+      const GroupId group = mesh_.add_group(1, model_.curves[CurveId(i)].name);
+      CellBlock& lines = mesh_.block(CellType::line);
+      for (const auto& [a, b] : grid_.curve_pieces[i]) {
+        lines.group.push_back(group);
+        for (const VertexIndex v : {a, b}) {
+          lines.vertices.emplace_back(new_id_[v]);
+          put_on_curve(mesh_.vertex_entity[new_id_[v]], static_cast<std::uint32_t>(i));
+        }
+      }
+    }
+  }
+
+  void add_corners() {
+    for (std::size_t i = 0; i < model_.corners.size(); ++i) {
+      const VertexIndex v = new_id_[model_.corners[i].index()];
+      if (v == kNoIndex) continue;
+      CellBlock& corners = mesh_.block(CellType::vertex);
+      corners.group.push_back(mesh_.add_group(0, model_.corner_names[i]));
+      corners.vertices.emplace_back(v);
+      mesh_.vertex_entity[v] = {0, static_cast<std::uint32_t>(i), 0, 0};
+    }
+  }
+
+  static void put_on_curve(VertexEntity& entity, std::uint32_t curve) {
+    if (entity.dimension > 1 || (entity.dimension == 1 && entity.id == kNoIndex))
+      entity = {1, curve, 0, 0};
+    else if (entity.dimension == 1 && entity.id != curve)
+      entity = {0, kNoIndex, 0, 0};  // between curves
   }
 
   /// A patch with both one-sided and two-sided faces becomes two groups, since only one of them is a boundary.

@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "volume/curve_points.hpp"
 #include "volume/edge_flips.hpp"
 #include "volume/facets.hpp"
 #include "volume/thin_out.hpp"
@@ -24,7 +25,8 @@ namespace {
 constexpr int kMaxPasses = 20;
 constexpr double kFlat = 1e-7;  ///< mean ratio of a tet that is flat to rounding: a place to avoid as long as possible
 constexpr int kMaxGrowth = 60;  ///< tets that a sector takes in beyond the star of its point
-constexpr int kLookAheads = 6;  ///< places on which walls in the way are looked for, tried in turn:
+constexpr int kMaxCurvePasses = 3;  ///< in which nothing has moved, before points on curves stay
+constexpr int kLookAheads = 6;      ///< places on which walls in the way are looked for, tried in turn:
 constexpr double kCloser = 1. / 8;  ///< of the sector's reach from its point inwards, and so on
 
 using Face = std::array<VertexIndex, 3>;
@@ -239,7 +241,7 @@ class PointRemoval {
   bool grow(Sector& sector) {
     for (int k = 0; k < kMaxGrowth; ++k) {
       if (!take_tet_behind_nearest_wall(sector)) return false;
-      if (place(sector) && loses_no_given_vertex(sector)) return true;
+      if (place(sector) && loses_nothing_given(sector)) return true;
     }
     return false;
   }
@@ -292,8 +294,14 @@ class PointRemoval {
     }
   }
 
-  /// Only free vertices may vanish inside of a sector that has grown.
-  bool loses_no_given_vertex(const Sector& sector) const {
+  /// Only free vertices, and edges that are not kept, may vanish inside of a sector that has grown.
+  bool loses_nothing_given(const Sector& sector) const {
+    const auto is_in_wall = [&](VertexIndex a, VertexIndex b) {
+      return std::any_of(sector.walls.begin(), sector.walls.end(), [&](const Face& f) {
+        return std::find(f.begin(), f.end(), a) != f.end() && std::find(f.begin(), f.end(), b) != f.end();
+      });
+    };
+    if (c_.loses_kept_edge(sector.tets, is_in_wall)) return false;
     for (const TetIndex t : sector.tets)
       for (unsigned k = 0; k < 4; ++k) {
         const VertexIndex v = c_.node[4 * t + k];
@@ -418,6 +426,10 @@ void forget(Segments& segments, VertexIndex s) {
   std::erase_if(chain, [&](const Segments::Steiner& p) { return p.vertex == s; });
 }
 
+bool is_on_curve(const Segments& segments, VertexIndex s) {
+  return segments.steiner_edge[s - segments.first_steiner] >= segments.num_surface_edges;
+}
+
 /// Takes the free vertices around s away, or moves those that stay to where their own tets are best.
 void make_room(TetComplex& c, VertexIndex s) {
   std::vector<TetIndex> star, ball;
@@ -449,19 +461,20 @@ void make_room(TetComplex& c, VertexIndex s) {
 
 /// Points that stay become plain coordinates; every tet around them has to stay positive.
 /// @param at_border  the points of them that lie on the border of a sheet
-void round_points(TetComplex& c, const std::vector<VertexIndex>& left, const std::set<VertexIndex>& at_border,
-                  RecoveryReport& report) {
+void round_points(TetComplex& c, const Segments& segments, const std::vector<VertexIndex>& left,
+                  const std::set<VertexIndex>& at_border, RecoveryReport& report) {
   std::vector<TetIndex> star;
   c.segment_points.clear();
   for (const VertexIndex s : left) {
     c.on_boundary[s] = 1;
     const Point at = c.point(s);
     report.left.push_back({at, {s}});
-    report.left_why.push_back(at_border.contains(s)
-                                  ? "a sheet ends at this edge, and one region lies all round it: a point that leaves "
-                                    "the edge would have to cross the sheet"
-                                  : "no place inside sees all around the point in double precision: the surface is "
-                                    "too thin there");
+    report.left_why.push_back(
+        is_on_curve(segments, s) ? "an edge of a curve stays divided: switches did not find it whole"
+        : at_border.contains(s)  ? "a sheet ends at this edge, and one region lies all round it: a point that leaves "
+                                   "the edge would have to cross the sheet"
+                                 : "no place inside sees all around the point in double precision: the surface is "
+                                   "too thin there");
     c.star(s, star);
     for (const TetIndex t : star) {
       const std::uint32_t* n = &c.node[4 * t];
@@ -489,14 +502,22 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
   report.steiner_points = segments.steiner_edge.size();
   std::reverse(left.begin(), left.end());  // the last ones split the shortest pieces
   PointRemoval removal(complex, segments);
-  const RequiredEdges none{Segments{}};  // constrained faces hold all edges that matter
-  EdgeFlips flips(complex, none);
+  EdgeFlips flips(complex, complex.kept_edges);  // constrained faces hold all other edges that matter
+  std::vector<VertexIndex> ends;
+  const auto remove = [&](VertexIndex s) {
+    if (!is_on_curve(segments, s)) return removal.remove(s);
+    removal.is_at_sheet_border = false;
+    if (removal.growth > kMaxCurvePasses) return false;
+    ends.clear();
+    segments.neighbours(s, ends);
+    return remove_curve_point(complex, s, ends[0], ends[1], removal.growth > 0);
+  };
   std::set<VertexIndex> at_border;
   for (int pass = 0; pass < kMaxPasses && !left.empty(); ++pass) {
     std::vector<VertexIndex> still;
     at_border.clear();
     for (std::size_t i = 0; i < left.size(); ++i) {
-      if (removal.remove(left[i])) {
+      if (remove(left[i])) {
         forget(segments, left[i]);
         ++report.steiner_moved;
       } else {
@@ -513,8 +534,10 @@ void unsplit_boundary(TetComplex& complex, Segments& segments, RecoveryReport& r
     for (const VertexIndex s : left) make_room(complex, s);
     flips.restore_delaunay(context);
   }
-  report.steiner_left = left.size();
-  round_points(complex, left, at_border, report);
+  report.curve_points_left = static_cast<std::size_t>(
+      std::count_if(left.begin(), left.end(), [&](VertexIndex s) { return is_on_curve(segments, s); }));
+  report.steiner_left = left.size() - report.curve_points_left;
+  round_points(complex, segments, left, at_border, report);
 }
 
 }  // namespace delfront

@@ -137,6 +137,17 @@ Model to_model(const Facets& facets) {
     for (const std::size_t v : face) block.vertices.push_back(VertexId(v));
     block.offsets.push_back(block.vertices.size());
   }
+  for (const auto& curve : facets.curves)
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+      CellBlock& lines = mesh.block(CellType::line);
+      lines.vertices.insert(lines.vertices.end(), {VertexId(curve[i]), VertexId(curve[i + 1])});
+      lines.group.push_back(mesh.add_group(1, "wire"));
+    }
+  for (const std::size_t v : facets.corners) {
+    CellBlock& corners = mesh.block(CellType::vertex);
+    corners.vertices.push_back(VertexId(v));
+    corners.group.push_back(mesh.add_group(0, "probe"));
+  }
   Context context;
   return build_model({{std::move(mesh), "body"}}, context);
 }
@@ -175,6 +186,49 @@ void expect_same_boundary(const Model& model, const BoundaryGrid& grid, bool all
   EXPECT_GT(found + parts, 0u);
 }
 
+/// Curves are chains of edges from vertex to vertex, nearly straight, with no points between but those reported.
+void expect_curves(const Model& model, const BoundaryGrid& grid, const RecoveryReport& report) {
+  ASSERT_EQ(grid.curve_pieces.size(), model.curves.size());
+  const TetComplex& c = grid.complex;
+  std::vector<TetIndex> scratch;
+  std::set<VertexIndex> left;
+  for (const Place& place : report.left) left.insert(place.ids.begin(), place.ids.end());
+  std::size_t edges = 0, split = 0, points = 0;
+  for (std::size_t i = 0; i < model.curves.size(); ++i) {
+    const std::vector<VertexId>& vertices = model.curves[CurveId(i)].vertices;
+    std::size_t step = 0;
+    bool is_split = false;
+    for (const auto& [a, b] : grid.curve_pieces[i]) {
+      EXPECT_NE(c.find_edge(a, b, scratch), kNoIndex) << "an edge of a curve is not there";
+      EXPECT_TRUE(c.on_boundary[a] && c.on_boundary[b]);
+      if (a < model.points.size()) {
+        while (step + 1 < vertices.size() && vertices[step].value != a) ++step;
+        EXPECT_EQ(vertices[step].value, a) << "a curve jumps";
+      }
+      const Point from = model.points[vertices[step]], to = model.points[vertices[step + 1]];
+      EXPECT_LE(length(cross(c.point(b) - from, to - from)), 1e-14 * squared_length(to - from) + 1e-15 * length(from));
+      if (b >= model.points.size()) {
+        EXPECT_TRUE(left.contains(b)) << "a point on a curve is not reported";
+        is_split = true;
+        ++points;
+        continue;
+      }
+      EXPECT_EQ(b, vertices[step + 1].value);
+      ++edges;
+      split += is_split ? 1 : 0;
+      is_split = false;
+    }
+  }
+  EXPECT_EQ(report.curve_edges, edges);
+  EXPECT_EQ(report.curve_edges_split, split);
+  EXPECT_LE(report.curve_points_left, points);
+  for (const VertexId v : model.corners)
+    if (c.vertex_tet[v.value] != kNoIndex) {
+      EXPECT_EQ(c.point(v.value), model.points[v]);
+      EXPECT_EQ(c.on_boundary[v.value], 1);
+    }
+}
+
 }  // namespace
 
 Recovered expect_recovered(const Model& model, double volume, const DomainOptions& domain) {
@@ -186,10 +240,11 @@ Recovered expect_recovered(const Model& model, double volume, const DomainOption
   result.grid = tetrahedralize_boundary(model, domain, is_far_field, result.report, context);
   EXPECT_EQ(result.grid.complex.find_defect(), "");
   EXPECT_TRUE(result.grid.complex.segment_points.empty());
-  EXPECT_EQ(result.report.left.size(), result.report.steiner_left);
-  EXPECT_LE(result.report.steiner_moved + result.report.steiner_left, result.report.steiner_points);
+  EXPECT_EQ(result.report.left.size(), result.report.steiner_left + result.report.curve_points_left);
+  EXPECT_LE(result.report.steiner_moved + result.report.left.size(), result.report.steiner_points);
   EXPECT_EQ(result.grid.split.empty(), result.report.steiner_left == 0);
   expect_same_boundary(model, result.grid, domain.keep.empty() && domain.keep_points.empty());
+  expect_curves(model, result.grid, result.report);
   result.volume = total_volume(result.grid.complex);
   const Box box = model.bounding_box();
   const Point size = box.high - box.low;

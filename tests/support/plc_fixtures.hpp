@@ -18,7 +18,9 @@ struct Facets {
 
   /// @brief Append another one; equal points are welded when the model is built.
   void add(const Facets& other, Point shift = {}, double scale = 1);
-  void turn();  ///< every face the other way round
+  std::vector<std::vector<std::size_t>> curves = {};  ///< chains of points
+  std::vector<std::size_t> corners = {};              ///< embedded points
+  void turn();                                        ///< every face the other way round
   /// @brief Volume enclosed, by the divergence theorem; n-gons must be flat.
   double volume() const;
 };
@@ -47,7 +49,8 @@ struct Recovered {
 
 /// @brief Recover a surface's boundary and test all that must hold whatever the surface:
 /// the surface is valid (else the test's own input is wrong), find_defect() and check(mesh) find nothing, every
-/// triangle at a kept region is a face vertex for vertex or is named in `split`, no other face is constrained, nothing
+/// triangle at a kept region is a face vertex for vertex or is named in `split`, no other face is constrained, every
+/// edge of a curve is an edge, kept, or a chain of points that the report names (all of them in kept regions), nothing
 /// stays implicit, the counts of the report add up, and the volume is `volume` (to rounding; NaN: not tested).
 Recovered expect_recovered(const Model& model, double volume, const DomainOptions& domain = {});
 Recovered expect_recovered(const Facets& facets, double volume, const DomainOptions& domain = {});

@@ -111,6 +111,14 @@ void operate_at_random(TetComplex c, unsigned seed, int steps, int (&done)[4]) {
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   const auto faces = fixtures::constrained_faces(c);
   const double volume = fixtures::total_volume(c);
+  std::mt19937 choice(seed + 100);
+  for (int i = 0; i < 20; ++i) {
+    const auto t = static_cast<TetIndex>(choice() % c.num_slots());
+    if (c.is_dead(t) || c.is_ghost(t)) continue;
+    const auto& e = kEdgeNodes[choice() % 6];
+    c.kept_edges.insert(c.node[4 * t + e[0]], c.node[4 * t + e[1]]);
+    for (const int k : {0, 1}) c.on_boundary[c.node[4 * t + e[k]]] = 1;
+  }
   const auto vertices = c.vertex;
   std::mt19937 random(seed);
   LocalOperations operations(c);
@@ -135,6 +143,8 @@ void operate_at_random(TetComplex c, unsigned seed, int steps, int (&done)[4]) {
     ASSERT_NEAR(fixtures::total_volume(c), volume, 1e-11) << "step " << step << " kind " << kind;
   }
   EXPECT_EQ(fixtures::constrained_faces(c), faces);
+  std::vector<TetIndex> scratch;
+  for (const auto& [a, b] : c.kept_edges.sorted()) EXPECT_NE(c.find_edge(a, b, scratch), kNoIndex) << a << " " << b;
   for (VertexIndex v = 0; v < vertices.size(); ++v)
     if (c.on_boundary[v]) {
       EXPECT_EQ(c.point(v), vertices[v].point());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -33,6 +34,22 @@ TEST(Check, finds_nothing_in_valid_grids) {
   EXPECT_EQ(kinds(check(grids::cube(4))), "");
   EXPECT_EQ(kinds(check(grids::mixed_cells())), "");
   EXPECT_EQ(kinds(check(grids::square(5))), "");
+}
+
+TEST(Check, lines_are_edges_of_cells) {
+  Mesh mesh = grids::cube(1);  // six tets around the diagonal from (0, 0, 0) to (1, 1, 1)
+  const auto at = [&](Point p) {
+    return VertexId(
+        static_cast<std::size_t>(std::find(mesh.points.begin(), mesh.points.end(), p) - mesh.points.begin()));
+  };
+  std::vector<VertexId>& lines = mesh.block(CellType::line).vertices;
+  lines = {at({1, 1, 1}), at({0, 0, 0}), at({0, 0, 0}), at({1, 0, 0})};
+  EXPECT_EQ(kinds(check(mesh)), "");
+  lines.insert(lines.end(), {at({1, 0, 0}), at({0, 1, 1})});
+  const std::vector<Finding> findings = check(mesh);
+  EXPECT_EQ(kinds(findings), "loose_lines");
+  EXPECT_EQ(find(findings, "loose_lines").count, 1u);
+  EXPECT_EQ(find(findings, "loose_lines").places[0].at, (Point{0.5, 0.5, 0.5}));
 }
 
 TEST(Check, decides_orientation_exactly) {
