@@ -23,7 +23,7 @@
 // 72U = 1032U. m l_w: 160U + 96U + 48U = 304U. Their difference: 1032U + 304U + 96U = 1432U XYZL; a tenth more pays for
 // the bound's own rounding and for the low part that is not looked at. Where all differences are multiples of some g
 // and less than 2^16 g, a determinant is a multiple of g^5 (g^3 for m), so that one within its bound, if this is below
-// half of that, is 0: a tie.
+// half of that, is 0: a tie. With less than 2^9 g no sum passes 72 * 2^45 g^5: there plain arithmetic is exact.
 #ifdef __AVX2__
 #include <immintrin.h>
 #endif
@@ -56,6 +56,7 @@ typedef long long Mask __attribute__((vector_size(32)));
 inline constexpr double kInsphereFaceBound = 384 * detail::kRoundoff;
 inline constexpr double kTwofoldInsphereBound = 1536 * detail::kRoundoff * detail::kRoundoff;
 inline constexpr double kTwofoldOrient3dBound = 192 * detail::kRoundoff * detail::kRoundoff;
+inline constexpr int kPlainBits = 9, kTwofoldBits = 16;
 inline constexpr double kTinyTwofold = 0x1p-740;  ///< lost low parts, 2^-1074 each, times at most 2^306
 
 inline Vector all(double x) { return Vector{x, x, x, x}; }
@@ -242,39 +243,40 @@ inline Four<Exact> narrowed(const Four<Twofold>& f) {
   return {x, y, z, x * x + y * y + z * z};
 }
 
-/// The unit that all coordinates of both are multiples of if they are whole on a scale where the largest has 16 bits;
-/// else 0.
-inline double unit_of(const Four<Vector>& v, const Four<Vector>& w, const Extent& e) {
+/// The unit that all coordinates of both are multiples of if they are whole on a scale where the largest has so many
+/// bits; else 0.
+inline double unit_of(const Four<Vector>& v, const Four<Vector>& w, const Extent& e, int num_bits) {
   const Vector extent = largest(larger(larger(e.x, e.y), e.z));
   const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(extent[0]) >> 52);
-  constexpr int kBits = 16, kBias = 1023, kSmallest = 800;  // so that the unit's fifth power is a normal number
+  constexpr int kBias = 1023, kSmallest = 800;  // so that the unit's fifth power is a normal number
   if (exponent < kSmallest) return 0;
   const auto power_of_two = [](int n) { return std::bit_cast<double>(static_cast<std::uint64_t>(n) << 52); };
-  const Vector scale = all(power_of_two(2 * kBias + kBits - 1 - exponent));
+  const Vector scale = all(power_of_two(2 * kBias + num_bits - 1 - exponent));
   const auto part = [&](Vector x) {  // what is not whole
     const Vector scaled = x * scale;
     return reinterpret_cast<Mask>(scaled != _mm256_round_pd(scaled, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
   };
   const Mask broken = part(v.x) | part(v.y) | part(v.z) | part(w.x) | part(w.y) | part(w.z);
-  return bits(broken) ? 0 : power_of_two(exponent - kBits + 1);
+  return bits(broken) ? 0 : power_of_two(exponent - num_bits + 1);
 }
 
 }  // namespace lanes
 
 namespace lanes {
 
+inline Vector high(Vector v) { return v; }
+inline Vector high(const Twofold& v) { return v.high; }
+
 /// @param unit  see unit_of()
 template <class Number>
-inline FaceTests decide_twofold(const Four<Number>& corner, const Four<Number>& apex, const Extent& corners,
-                                const Extent& e, double unit) {
+inline FaceTests decide(const Four<Number>& corner, const Four<Number>& apex, Vector side_bound, Vector bound,
+                        double unit) {
   const Corners<Number> c = corners_of(corner);
   const double unit3 = unit * unit * unit;
-  const Vector side_bound = all(kTwofoldOrient3dBound) * (corners.x * corners.y * corners.z) + all(kTinyTwofold);
   FaceTests tests;
-  decide_sides(c.side.high, side_bound, tests);
+  decide_sides(high(c.side), side_bound, tests);
   tests.unseen |= ~tests.seen & bits(side_bound < all(unit3 / 2));
-  const Vector power = turned(powers_of(c, apex).high);
-  const Vector bound = all(kTwofoldInsphereBound) * (e.x * e.y * e.z * e.lift) + all(kTinyTwofold);
+  const Vector power = turned(high(powers_of(c, apex)));
   tests.inside = bits(power < -bound);
   tests.outside = bits(power > bound);
   tests.tie = ~(tests.inside | tests.outside) & bits(bound < all(unit3 * unit * unit / 2));
@@ -292,10 +294,17 @@ inline FaceTests test_faces_twofold(const TetVertex* const v[4], const TetVertex
   const bool is_corner_short = exact_relative(v, p, corner), is_short = exact_relative(w, p, apex) && is_corner_short;
   const Four<Vector> corner_high = rounded(corner), apex_high = rounded(apex);
   const Extent corners = extent_of(corner_high), e = extent_of(corners, apex_high);
-  if (is_short) return decide_twofold(narrowed(corner), narrowed(apex), corners, e, unit_of(corner_high, apex_high, e));
+  if (const double unit = is_short ? unit_of(corner_high, apex_high, e, kPlainBits) : 0; unit > 0)
+    return decide(corner_high, apex_high, all(0), all(0), unit);
+  const Vector side_bound = all(kTwofoldOrient3dBound) * (corners.x * corners.y * corners.z) + all(kTinyTwofold);
+  const Vector bound = all(kTwofoldInsphereBound) * (e.x * e.y * e.z * e.lift) + all(kTinyTwofold);
+  if (is_short) {
+    const double unit = unit_of(corner_high, apex_high, e, kTwofoldBits);
+    return decide(narrowed(corner), narrowed(apex), side_bound, bound, unit);
+  }
   corner.lift = corner.x * corner.x + corner.y * corner.y + corner.z * corner.z;
   apex.lift = apex.x * apex.x + apex.y * apex.y + apex.z * apex.z;
-  return decide_twofold(corner, apex, corners, e, 0);
+  return decide(corner, apex, side_bound, bound, 0);
 }
 
 #else
