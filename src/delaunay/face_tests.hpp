@@ -248,7 +248,7 @@ inline Four<Exact> narrowed(const Four<Twofold>& f) {
 inline double unit_of(const Four<Vector>& v, const Four<Vector>& w, const Extent& e, int num_bits) {
   const Vector extent = largest(larger(larger(e.x, e.y), e.z));
   const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(extent[0]) >> 52);
-  constexpr int kBias = 1023, kSmallest = 800;  // so that the unit's fifth power is a normal number
+  constexpr int kBias = 1023, kSmallest = 840;  // so that the fifth power of a unit of 16 bits is a normal number
   if (exponent < kSmallest) return 0;
   const auto power_of_two = [](int n) { return std::bit_cast<double>(static_cast<std::uint64_t>(n) << 52); };
   const Vector scale = all(power_of_two(2 * kBias + num_bits - 1 - exponent));
