@@ -220,8 +220,8 @@ bool DelaunayKernel::is_inside_exactly(FaceRef face, VertexIndex v, bool is_tie)
 /// @param apex  across the four faces
 /// @return false where it is not the usual case
 template <bool kConstrained>
-[[gnu::always_inline]] inline bool DelaunayKernel::look_across_fast(TetIndex t, const VertexIndex* apex, VertexIndex v, unsigned open,
-                                      double min_distance2, Faces& faces) {
+[[gnu::always_inline]] inline bool DelaunayKernel::look_across_fast(TetIndex t, const VertexIndex* apex, VertexIndex v,
+                                                                    unsigned open, double min_distance2, Faces& faces) {
   const std::uint32_t* const n = &c_.node[4 * t];
   if (n[3] == kGhost || std::max(std::max(apex[0], apex[1]), std::max(apex[2], apex[3])) == kGhost) return false;
   const TetVertex* const all = c_.vertex.data();
