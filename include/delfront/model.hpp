@@ -48,6 +48,7 @@ struct Model {
   double feature_angle = 40;  ///< degrees, for curves and corners found by angle
 
   Box bounding_box() const;
+  Box surface_box() const;  ///< of the triangles alone: curves and points in the volume do not count
 };
 
 /// @brief One named input: a mesh as a reader gave it, and the stem used for unnamed patches.

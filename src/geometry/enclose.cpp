@@ -222,7 +222,7 @@ PatchId add_far_field(Model& model, const EncloseOptions& options, const LengthS
     throw UsageError(fmt::format("enclose: unknown shape '{}'; allowed: none, box, sphere", options.shape));
   context.check_limits();
   const bool is_sphere = options.shape == "sphere";
-  const Point centre = model.bounding_box().centre();
+  const Point centre = model.surface_box().centre();
   const bool has_size = is_sphere || !options.corners;
   const double size = has_size ? to_model_units(options.size, scale) : 0;
   if (has_size) require_positive(size, is_sphere ? "radius" : "half side");

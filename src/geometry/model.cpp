@@ -248,6 +248,13 @@ Box Model::bounding_box() const {
   return box;
 }
 
+Box Model::surface_box() const {
+  Box box;
+  for (const std::array<VertexId, 3>& triangle : triangles)
+    for (const VertexId v : triangle) box.add(points[v]);
+  return box;
+}
+
 Model build_model(const std::vector<NamedMesh>& inputs, Context& context) {
   ModelBuilder builder(context);
   for (const NamedMesh& input : inputs) builder.add(input);

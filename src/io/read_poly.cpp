@@ -184,8 +184,9 @@ class PolyReader {
       cursor_.skip_line();
       for (std::size_t i = 0; i < n && !cursor_.at_end(); ++i) cursor_.skip_line();
       if (n > 0)
-        context_.warn(
-            fmt::format("{}: {} {} point(s) are not used; give domain.seeds instead", cursor_.path(), n, what));
+        context_.warn(fmt::format(
+            "{}: {} {} point(s) are not used; name the regions to be gridded by points in them (--keep X,Y,Z)",
+            cursor_.path(), n, what));
     }
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gmsh MSH 4.1 (default) and 2.2, ASCII or binary. A group is one physical group and one entity of the same tag; cells
-// without a group get an entity of their own without a physical group. All nodes belong to one entity of the top
+// without a group get an entity of their own, in a physical group without a name where there are groups at all (readers
+// want all cells or none to be in one). All nodes belong to one entity of the top
 // dimension. The tag of a cell is its place in the mesh, so that read_msh finds the order again.
 #include <fmt/format.h>
 
@@ -75,7 +76,7 @@ std::vector<Batch> make_batches(const Mesh& mesh) {
       if (batch == Id<struct BatchTag>::kNone) {
         batch = static_cast<std::uint32_t>(batches.size());
         const std::int32_t place = group < 0 ? none : number[static_cast<std::size_t>(group)];
-        batches.push_back({&block, place + 1, group < 0 ? 0 : place + 1, tag, {}});
+        batches.push_back({&block, place + 1, mesh.groups.empty() ? 0 : place + 1, tag, {}});
       }
       batches[batch].cells.push_back(static_cast<std::uint32_t>(cell));
     }
@@ -147,9 +148,8 @@ void write_elements2(MshOutput& msh, const std::vector<Batch>& batches) {
 
 /// One entity a group and one for the cells without; their boxes are that of the mesh, which Gmsh only displays.
 void write_entities(MshOutput& msh, const Mesh& mesh, const std::vector<Batch>& batches) {
-  std::array<std::int32_t, 4> num_groups{}, num_entities{};
-  for (const Group& group : mesh.groups) ++num_groups[static_cast<std::size_t>(group.dimension)];
-  num_entities = num_groups;
+  std::array<std::int32_t, 4> num_entities{};
+  for (const Group& group : mesh.groups) ++num_entities[static_cast<std::size_t>(group.dimension)];
   for (const Batch& batch : batches) {
     const auto d = static_cast<std::size_t>(dimension(batch.block->type));
     num_entities[d] = std::max(num_entities[d], batch.entity);
@@ -163,8 +163,8 @@ void write_entities(MshOutput& msh, const Mesh& mesh, const std::vector<Batch>& 
       msh.int32(entity);
       write_point(msh, box.low);
       if (d > 0) write_point(msh, box.high);
-      msh.int64(entity <= num_groups[d] ? 1 : 0);
-      if (entity <= num_groups[d]) msh.int32(entity);
+      msh.int64(mesh.groups.empty() ? 0 : 1);
+      if (!mesh.groups.empty()) msh.int32(entity);
       if (d > 0) msh.int64(0);
       msh.end_line();
     }

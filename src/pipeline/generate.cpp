@@ -21,6 +21,8 @@ namespace delfront {
 
 namespace {
 
+constexpr double kMuchLonger = 1.5;  ///< edges of the surface than the largest size
+
 /// Turned and looked at; what cannot bound a volume goes no further.
 SurfaceReport prepare_surface(Model& model, Context& context) {
   const std::size_t turned = orient_shells(model, context);
@@ -64,6 +66,26 @@ std::unique_ptr<SizeField> build_size_field(const TetComplex& complex, const Siz
   return build_asked_size_field(std::move(boundary), options, largest, context);
 }
 
+/// Surfaces are kept as they are given, whatever sizes are asked for: flat cells stand where the two do not fit.
+void warn_of_coarse_surface(const Model& model, const SizeOptions& options, Context& context) {
+  if (!options.hmax) return;
+  double longest = 0;
+  Point at;
+  for (const std::array<VertexId, 3>& triangle : model.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Point a = model.points[triangle[static_cast<std::size_t>(k)]],
+                  b = model.points[triangle[static_cast<std::size_t>((k + 1) % 3)]];
+      if (length(b - a) <= longest) continue;
+      longest = length(b - a);
+      at = 0.5 * (a + b);
+    }
+  if (longest > kMuchLonger * options.hmax->value)
+    context.warn(
+        fmt::format("edges of the surface are up to {:g} long (at {:g} {:g} {:g}), size.hmax is {:g}: the surface "
+                    "is kept as given, cells along it may be flat; give it finer triangles",
+                    longest, at.x, at.y, at.z, options.hmax->value));
+}
+
 /// The field's size at every vertex, so that all sizes keep the growth.
 void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
   std::vector<Point> places;
@@ -90,6 +112,7 @@ Outcome generate(Model model, const Options& options, Context& context) {
   refuse_invalid(report.surface);
   BoundaryGrid grid =
       tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+  warn_of_coarse_surface(model, options.size, context);
   std::unique_ptr<SizeField> size = build_size_field(grid.complex, options.size, context);
   set_vertex_sizes(grid.complex, *size);
   report.refine = refine_complex(grid.complex, *size, options.volume, context);

@@ -109,7 +109,7 @@ void set_boundaries(Run& run, Model& model) {
 Model make_model(Run& run) {
   Model model = build_model(run.inputs, run.context);
   model.feature_angle = run.options.input.feature_angle;
-  set_scale(run, model.bounding_box());
+  set_scale(run, model.surface_box());
   set_boundaries(run, model);
   return model;
 }

@@ -192,7 +192,11 @@ class Core {
   }
 
   void check_num_cells(std::size_t cells) const {
-    context_.check_cells(cells);
+    if (context_.max_cells > 0 && cells > context_.max_cells)
+      throw LimitError(
+          fmt::format("stopped: cells of size {:g} are at least {} in number, over the limit of {}; ask for "
+                      "larger sizes (--hmax, --growth) or allow more cells (--max-cells)",
+                      h_, cells, context_.max_cells));
     if (cells > TetComplex::kMaxSlots)
       throw LimitError(fmt::format("stopped: cells of size {:g} would be more than {} in number; ask for larger ones",
                                    h_, TetComplex::kMaxSlots));

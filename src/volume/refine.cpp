@@ -26,8 +26,8 @@ constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;      ///< of the wanted size, between points
 constexpr std::uint64_t kMaxSteps = 1000;  ///< to a proposal's tet, 5 on average: beyond, a walk among slivers wanders
 constexpr std::size_t kPointsPerCancelCheck = 4096;
-constexpr double kWorthYield = 1e-3;  ///< points a proposal below which gaps are left
-constexpr std::size_t kRecent = 16;   ///< points inserted last that are looked at first
+constexpr std::size_t kTriesPerPoint = 1000, kCheapTries = 1 << 14;  ///< more for a point are too many, if not cheap
+constexpr std::size_t kRecent = 16;                                  ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
 constexpr std::size_t kGrain = 1 << 12;
 constexpr std::size_t kSlotsPerProposal = 4;  ///< a third of the proposals become points, of 5.7 tets each
@@ -126,7 +126,8 @@ class Refinement {
       std::size_t inserted = 0;
       do inserted += run_round(placement);
       while (num_left_ > 0);
-      is_worthwhile = static_cast<double>(inserted) > kWorthYield * static_cast<double>(report_.candidates - before);
+      const std::size_t tried = report_.candidates - before;
+      is_worthwhile = inserted > (tried > kCheapTries ? tried / kTriesPerPoint : 0);
       run_front();
     }
   }
