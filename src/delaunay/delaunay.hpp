@@ -108,7 +108,8 @@ class DelaunayKernel {
   void make_ball();
   bool make_star_shaped(TetIndex start);
   bool swallows_a_vertex() const;
-  bool swallows_a_kept_edge() const;
+  bool spare_kept_edges(TetIndex start);
+  void drop_unmarked();
   void clear_marks();
   bool has_room() const { return !is_confined() || slots_.size() + cavity_.size() >= ball_.faces.size(); }
   TetIndex take_slot();

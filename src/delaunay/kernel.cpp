@@ -28,6 +28,7 @@ struct ExactView {
 
 constexpr std::uint64_t kLongWalk = 1000;  ///< steps, and a quarter of the tets, after which a walk gives way to a scan
 constexpr unsigned kAllFaces = 15;
+constexpr std::size_t kFewFaces = 64;
 
 }  // namespace
 
@@ -340,16 +341,20 @@ bool DelaunayKernel::make_star_shaped(TetIndex start) {
       changed = true;
     }
     if (!changed) return true;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < cavity_.size(); ++i) {
-      if (!(c_.flag[cavity_[i]] & TetComplex::marked)) continue;
-      cavity_[kept] = cavity_[i];
-      seen_[kept++] = seen_[i];
-    }
-    cavity_.resize(kept);
-    seen_.resize(kept);
-    collect_border();
+    drop_unmarked();
   }
+}
+
+void DelaunayKernel::drop_unmarked() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cavity_.size(); ++i) {
+    if (!(c_.flag[cavity_[i]] & TetComplex::marked)) continue;
+    cavity_[kept] = cavity_[i];
+    seen_[kept++] = seen_[i];
+  }
+  cavity_.resize(kept);
+  seen_.resize(kept);
+  collect_border();
 }
 
 /// Vertices inside of the cavity would vanish.
@@ -360,14 +365,37 @@ bool DelaunayKernel::swallows_a_vertex() const {
   return false;
 }
 
-/// Kept edges inside of the cavity would vanish too.
-bool DelaunayKernel::swallows_a_kept_edge() const {
-  return c_.loses_kept_edge({cavity_.data(), cavity_.size()}, [this](VertexIndex a, VertexIndex b) {
+/// Kept edges inside of the cavity would vanish too: leaves out the tets around them, but for that of the point.
+/// @return false where no cavity is left
+bool DelaunayKernel::spare_kept_edges(TetIndex start) {
+  std::vector<std::array<VertexIndex, 2>> edges;  // of a large ball, or each would be sought among all faces
+  const auto collect_edges = [&] {
+    edges.clear();
+    if (ball_.faces.size() <= kFewFaces) return;
+    for (const Ball::Face& f : ball_.faces)
+      for (unsigned k = 0; k < 3; ++k) edges.push_back({f.node[k], f.node[(k + 1) % 3]});
+    std::sort(edges.begin(), edges.end());
+  };
+  const auto is_on_ball = [&](VertexIndex a, VertexIndex b) {  // each edge stands there in both directions
+    if (!edges.empty()) return std::binary_search(edges.begin(), edges.end(), std::array<VertexIndex, 2>{a, b});
     return std::any_of(ball_.faces.begin(), ball_.faces.end(), [&](const Ball::Face& f) {
       const VertexIndex* n = f.node;
       return (n[0] == a || n[1] == a || n[2] == a) && (n[0] == b || n[1] == b || n[2] == b);
     });
-  });
+  };
+  collect_edges();
+  for (;;) {
+    const auto [a, b] = c_.find_lost_edge({cavity_.data(), cavity_.size()}, is_on_ball);
+    if (a == kNoIndex) return true;
+    for (const TetIndex t : cavity_)
+      if (t != start && c_.has_vertex(t, a) && c_.has_vertex(t, b))
+        c_.flag[t] &= static_cast<std::uint16_t>(~TetComplex::marked);
+    const std::size_t before = cavity_.size();
+    drop_unmarked();
+    if (cavity_.size() == before || !make_star_shaped(start)) return false;
+    make_ball();
+    collect_edges();
+  }
 }
 
 void DelaunayKernel::clear_marks() {
@@ -404,11 +432,11 @@ DelaunayKernel::Insert DelaunayKernel::insert_checked(VertexIndex v, TetIndex st
     const std::size_t grown_size = cavity_.size();
     if (!is_star_shaped_ && !make_star_shaped(start)) return Insert::not_visible;
     make_ball();
+    if (!c_.kept_edges.empty() && !spare_kept_edges(start)) return Insert::not_visible;
     const bool is_whole = cavity_.size() == grown_size;
     if (is_whole ? !std::all_of(reached_.begin(), reached_.end(), [&](VertexIndex w) { return ball_.has_vertex(w); })
                  : swallows_a_vertex())
       return Insert::not_visible;
-    if (!c_.kept_edges.empty() && swallows_a_kept_edge()) return Insert::not_visible;
   } else {
     make_ball();
   }

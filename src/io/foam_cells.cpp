@@ -3,9 +3,14 @@
 // edges that leave it, and then all faces of that type must be those of the cell; what does not fit is a polyhedron.
 #include "io/foam_cells.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <array>
 #include <optional>
 
+#include "delfront/errors.hpp"
 #include "io/cells.hpp"
 
 namespace delfront {
@@ -94,6 +99,20 @@ std::size_t count_corners(const std::vector<Ring>& rings) {
   return static_cast<std::size_t>(std::unique(all.begin(), all.end()) - all.begin());
 }
 
+/// Every edge in both directions, once each: what a closed cell with outward faces has.
+bool is_closed(const std::vector<Ring>& rings) {
+  std::vector<std::array<std::uint32_t, 2>> ways, back;
+  for (const Ring& ring : rings)
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const std::uint32_t a = ring[i].value, b = ring[(i + 1) % ring.size()].value;
+      ways.push_back({a, b});
+      back.push_back({b, a});
+    }
+  std::sort(ways.begin(), ways.end());
+  std::sort(back.begin(), back.end());
+  return ways == back && std::adjacent_find(ways.begin(), ways.end()) == ways.end();
+}
+
 void add_one(const std::vector<Ring>& rings, GroupId group, Mesh& mesh) {
   const CellType type = guess_type(rings, count_corners(rings));
   if (type != CellType::polyhedron) {
@@ -110,7 +129,7 @@ void add_one(const std::vector<Ring>& rings, GroupId group, Mesh& mesh) {
 
 }  // namespace
 
-void add_foam_cells(const FoamFaceList& faces, std::span<const GroupId> group, Mesh& mesh) {
+void add_foam_cells(const FoamFaceList& faces, std::span<const GroupId> group, const std::string& path, Mesh& mesh) {
   std::vector<std::size_t> begin(group.size() + 1, 0);
   for (const auto& cells : {faces.owner, faces.neighbour})
     for (const std::uint32_t cell : cells) ++begin[cell + 1];
@@ -122,7 +141,13 @@ void add_foam_cells(const FoamFaceList& faces, std::span<const GroupId> group, M
       of_cell[next[cells[face]]++] = static_cast<std::uint32_t>(face);
   for (std::uint32_t cell = 0; cell < group.size(); ++cell) {
     const std::span<const std::uint32_t> here(of_cell.data() + begin[cell], begin[cell + 1] - begin[cell]);
-    add_one(outward_faces(faces, here, cell), group[cell], mesh);
+    const std::vector<Ring> rings = outward_faces(faces, here, cell);
+    if (!is_closed(rings))
+      throw InputError(
+          fmt::format("{}: cell {} is not closed: one of its faces ({}) is turned, missing, there twice or "
+                      "has a point twice",
+                      path, cell, fmt::join(here, ", ")));
+    add_one(rings, group[cell], mesh);
   }
 }
 

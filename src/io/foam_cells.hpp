@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "delfront/mesh.hpp"
@@ -24,7 +25,9 @@ struct FoamFaceList {
 /// @brief Append the cells of a polyMesh: tetrahedra, pyramids, prisms, hexahedra where their faces are those, else
 /// polyhedra.
 /// @param group  one a cell, perhaps invalid
+/// @param path   for messages
 /// @pre every cell has a face, and ids are in range
-void add_foam_cells(const FoamFaceList& faces, std::span<const GroupId> group, Mesh& mesh);
+/// @throws InputError  a cell is not closed
+void add_foam_cells(const FoamFaceList& faces, std::span<const GroupId> group, const std::string& path, Mesh& mesh);
 
 }  // namespace delfront

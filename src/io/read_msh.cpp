@@ -297,8 +297,15 @@ class MshReader {
       for (int k = 0; k < num_vertices(cell.type); ++k)
         corners.push_back(vertex(pool_[cell.first_vertex + static_cast<std::size_t>(k)], cell));
       const std::int64_t tag = has_physical[static_cast<std::size_t>(d)] ? cell.physical : cell.entity;
-      add_cell(mesh_, cell.type, corners, tag != 0 ? groups(d, tag) : GroupId());
+      add_cell(mesh_, cell.type, corners, tag != 0 && !is_no_group(d, tag) ? groups(d, tag) : GroupId());
     }
+  }
+
+  /// write_msh puts cells without a group behind the named ones of their dimension.
+  bool is_no_group(int d, std::int64_t tag) const {
+    const auto& names = names_[static_cast<std::size_t>(d)];
+    const bool has_names = std::any_of(names_.begin(), names_.end(), [](const auto& some) { return !some.empty(); });
+    return has_names && tag == static_cast<std::int64_t>(names.size()) + 1 && !names.contains(tag);
   }
 
   /// Before the groups are named, since "patch" and "region" depend on it.

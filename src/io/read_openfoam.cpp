@@ -40,7 +40,7 @@ class FoamReader {
     num_cells_ = read_owners();
     read_boundary();
     read_cell_zones();
-    add_foam_cells(faces_, region_of_cell_, mesh_);
+    add_foam_cells(faces_, region_of_cell_, path_, mesh_);
     add_patches();
     read_face_zones();
     check_finite(mesh_, path_);

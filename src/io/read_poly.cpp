@@ -21,6 +21,8 @@ namespace delfront {
 
 namespace {
 
+constexpr double kFlatness = 1e-6;  ///< of a facet's extent
+
 class PolyReader {
  public:
   PolyReader(std::string_view bytes, const std::string& path, Context& context)
@@ -121,12 +123,28 @@ class PolyReader {
       for (const std::vector<VertexId>& ring : rings) add_face(mesh_, ring, group);
       return;
     }
+    warn_of_bulge(facet);
     const FacetTriangles made = triangulate_or_fail(facet, global, begin);
     for (const auto& [a, b, c] : made.triangles) add_face(mesh_, std::array{global[a], global[b], global[c]}, group);
     for (const FacetTriangles::Piece& piece : made.pieces)
       if (piece.edge >= num_ring_edges)
         add_cell(mesh_, CellType::line, std::array{global[piece.a], global[piece.b]},
                  marker != 0 ? groups_(1, marker) : GroupId());
+  }
+
+  /// The triangles go through the points as they are.
+  void warn_of_bulge(const FacetOutline& facet) {
+    const double area = length(facet.normal);
+    double extent = 0, bulge = 0;
+    for (const Point& p : facet.points) {
+      extent = std::max(extent, length(p - facet.points[0]));
+      if (area > 0) bulge = std::max(bulge, std::abs(dot(p - facet.points[0], facet.normal)) / area);
+    }
+    if (bulge > kFlatness * extent)
+      context_.warn(
+          fmt::format("{}: facet {} is not flat: its points are up to {:.3g} off the plane of the others; the "
+                      "surface bends there",
+                      cursor_.path(), num_facets_read_, bulge));
   }
 
   /// What the predicates hold.

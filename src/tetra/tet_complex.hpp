@@ -108,16 +108,20 @@ class TetComplex {
     return !kept_edges.empty() && a != kGhost && b != kGhost && on_boundary[a] && on_boundary[b] &&
            kept_edges.has(a, b);
   }
-  /// @brief Whether one of the kept edges of these tets is no edge of the faces that `has_edge(a, b)` knows.
+  /// @brief A kept edge of these tets that is no edge of the faces that `has_edge(a, b)` knows; else kNoIndex twice.
+  template <class HasEdge>
+  std::array<VertexIndex, 2> find_lost_edge(std::span<const TetIndex> tets, HasEdge&& has_edge) const {
+    if (!kept_edges.empty())
+      for (const TetIndex t : tets)
+        for (const auto& e : kEdgeNodes) {
+          const VertexIndex a = node[4 * t + e[0]], b = node[4 * t + e[1]];
+          if (keeps_edge(a, b) && !has_edge(a, b)) return {a, b};
+        }
+    return {kNoIndex, kNoIndex};
+  }
   template <class HasEdge>
   bool loses_kept_edge(std::span<const TetIndex> tets, HasEdge&& has_edge) const {
-    if (kept_edges.empty()) return false;
-    for (const TetIndex t : tets)
-      for (const auto& e : kEdgeNodes) {
-        const VertexIndex a = node[4 * t + e[0]], b = node[4 * t + e[1]];
-        if (keeps_edge(a, b) && !has_edge(a, b)) return true;
-      }
-    return false;
+    return find_lost_edge(tets, has_edge)[0] != kNoIndex;
   }
   bool is_constrained(FaceRef ref) const { return (flag[ref >> 2] >> (ref & 3)) & 1; }
   void set_constrained(FaceRef ref, bool on) {

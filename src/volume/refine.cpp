@@ -25,7 +25,7 @@ constexpr double kRegularRadius = 0.61237243569579452;  ///< circumradius of a r
 constexpr double kAcceptedRadius = 1.30 * kRegularRadius;
 constexpr double kMinDistance = 0.70;      ///< of the wanted size, between points
 constexpr std::uint64_t kMaxSteps = 1000;  ///< to a proposal's tet, 5 on average: beyond, a walk among slivers wanders
-constexpr std::size_t kPointsPerCancelCheck = 4096;
+constexpr std::size_t kPointsPerCancelCheck = 256;
 constexpr std::size_t kTriesPerPoint = 1000, kCheapTries = 1 << 14;  ///< more for a point are too many, if not cheap
 constexpr std::size_t kRecent = 16;                                  ///< points inserted last that are looked at first
 constexpr double kFar = 1e150;
