@@ -126,6 +126,7 @@ TEST(ReadOpenFoam, damage_is_named_with_file_and_line) {
   expect_mentions(refused("points", "ascii", "binary"), {"points: line", "binary", "foamFormatConvert"});
   expect_mentions(refused("faces", "faceList", "faceCompactList"), {"faceCompactList", "only faceList"});
   expect_mentions(refused("faces", "3(0 ", "3(99 "), {"faces: line", "point 99"});
+  expect_mentions(refused("owner", "34\n(\n0\n", "34\n(\n5\n"), {"cell", "is not closed"});
   expect_mentions(refused("points", "12\n", "4000000000\n"), {"4000000000", "room for"});
   expect_mentions(refused("owner", "34\n(\n0\n", "34\n(\n77\n"), {"owner", "more cells than"});
   expect_mentions(refused("neighbour", "14\n(", "15\n("), {"neighbour"});

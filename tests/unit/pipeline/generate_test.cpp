@@ -189,6 +189,18 @@ TEST(Generate, limits_of_cells_and_time_end_the_run) {
   EXPECT_THROW(generate(sphere_model(3), sized(0.08), hasty), LimitError);
 }
 
+TEST(Generate, sizes_are_met_around_a_long_edge_of_a_curve) {
+  fixtures::Facets body = fixtures::box_facets({0, 0, 0}, {1, 1, 1});
+  body.points.push_back({0.02, 0.02, 0.02});
+  body.points.push_back({0.98, 0.97, 0.96});
+  body.curves.push_back({body.points.size() - 2, body.points.size() - 1});
+  Context context;
+  const Outcome outcome = generate(fixtures::to_model(body), sized(0.1), context);
+  EXPECT_EQ(outcome.mesh.num_cells(CellType::line), 1u);
+  for (const Finding& f : check(outcome.mesh)) EXPECT_NE(f.severity, Severity::error) << f.message;
+  EXPECT_GT(outcome.mesh.num_cells(CellType::tetrahedron), 5000u);  // 17 where points beside the edge are refused
+}
+
 TEST(Generate, a_size_far_too_small_ends_before_memory_does) {
   for (const double size : {3e-4, 1e-4, 1e-5}) {
     SCOPED_TRACE(size);
