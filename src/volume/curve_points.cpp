@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "volume/edge_flips.hpp"
+#include "volume/link.hpp"
 #include "volume/visible_point.hpp"
 
 namespace delfront {
@@ -14,34 +15,19 @@ namespace {
 
 constexpr std::size_t kMostFills = 60;  ///< a way to switch an edge takes a few where there is one
 
-using Face = std::array<VertexIndex, 3>;
-
-bool has(const Face& face, VertexIndex v) { return face[0] == v || face[1] == v || face[2] == v; }
-
 class CurvePointRemoval {
  public:
   CurvePointRemoval(TetComplex& complex, VertexIndex s, VertexIndex p, VertexIndex q)
       : c_(complex), s_(s), p_(p), q_(q) {}
 
   bool run(bool may_add_points) {
-    return collect_star() && (pull_into(p_) || pull_into(q_) || move_aside(may_add_points));
+    return find_link(c_, s_, star_, link_) && (pull_into(p_) || pull_into(q_) || move_aside(may_add_points));
   }
 
  private:
-  bool collect_star() {
-    c_.star(s_, star_);
-    for (const TetIndex t : star_) {
-      if (c_.is_ghost(t)) return false;
-      const auto at = static_cast<unsigned>(c_.local_index(t, s_));
-      if ((c_.flag[t] & 15u) & ~(1u << at)) return false;
-      link_.push_back(c_.face_nodes(4 * t + at));
-    }
-    return true;
-  }
-
   bool pull_into(VertexIndex u) {
     std::vector<std::array<VertexIndex, 4>> made;
-    for (const Face& f : link_) {
+    for (const LinkFace& f : link_) {
       if (has(f, u)) continue;
       if (c_.orient(f[0], f[1], f[2], u) <= 0) return false;
       made.push_back({f[0], f[1], f[2], u});
@@ -64,7 +50,7 @@ class CurvePointRemoval {
   bool move_aside(bool may_add_points) {
     std::vector<Wall> walls;
     double reach = 0;
-    for (const Face& f : link_) {
+    for (const LinkFace& f : link_) {
       walls.push_back({c_.exact(f[0]), c_.exact(f[1]), c_.exact(f[2])});
       reach = std::max(reach, distance(c_.point(s_), c_.point(f[0])));
     }
@@ -94,7 +80,7 @@ class CurvePointRemoval {
   TetComplex& c_;
   const VertexIndex s_, p_, q_;
   std::vector<TetIndex> star_;
-  std::vector<Face> link_;  ///< opposite s, normals towards it
+  std::vector<LinkFace> link_;  ///< opposite s, normals towards it
 };
 
 void warn_of_outside(const Model& model, const std::vector<std::size_t>& outside, Context& context) {

@@ -24,7 +24,7 @@ struct Segments {
   std::vector<std::array<VertexIndex, 2>> ends;           ///< one an edge, lower index first
   std::vector<std::vector<Steiner>> chain;                ///< one an edge, by rising t
   std::vector<std::array<std::uint32_t, 3>> of_triangle;  ///< edge k runs from corner k to corner k + 1
-  std::vector<std::vector<std::uint32_t>> of_curve;       ///< by curve and step along it; kNoIndex: not to be kept
+  std::vector<std::vector<std::uint32_t>> of_curve;       ///< by curve and step along it
   std::size_t num_surface_edges = 0;                      ///< those of triangles, which come first
   std::vector<std::uint32_t> vertex_offset, vertex_edge;  ///< edges of each model vertex: offsets and values
   std::vector<std::uint32_t> steiner_edge;                ///< edge of Steiner vertex first_steiner + i

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tetra/quality.hpp"
+#include "volume/link.hpp"
 
 namespace delfront {
 
@@ -12,29 +13,16 @@ namespace {
 
 constexpr std::size_t kMaxStar = 150;  ///< tets around a vertex that may be taken away for the sake of quality alone
 
-/// The faces opposite v of the tets around it, normals towards v; none where v is not free.
-bool find_link(const TetComplex& c, VertexIndex v, std::vector<TetIndex>& star,
-               std::vector<std::array<VertexIndex, 3>>& link) {
-  if (c.on_boundary[v] || c.vertex_tet[v] == kNoIndex || c.segment_points.contains(v)) return false;
-  c.star(v, star);
-  link.clear();
-  for (const TetIndex t : star) {
-    if (c.is_ghost(t)) return false;
-    const auto at = static_cast<unsigned>(c.local_index(t, v));
-    if ((c.flag[t] & 15u) & ~(1u << at)) return false;
-    link.push_back(c.face_nodes(4 * t + at));
-  }
-  return true;
+bool is_free(const TetComplex& c, VertexIndex v) {
+  return !c.on_boundary[v] && c.vertex_tet[v] != kNoIndex && !c.segment_points.contains(v);
 }
-
-bool has(const std::array<VertexIndex, 3>& face, VertexIndex v) { return face[0] == v || face[1] == v || face[2] == v; }
 
 }  // namespace
 
 bool contract_free_vertex(TetComplex& c, VertexIndex v, bool to_better) {
   std::vector<TetIndex> star, new_tets;
-  std::vector<std::array<VertexIndex, 3>> link;
-  if (!find_link(c, v, star, link) || (to_better && star.size() > kMaxStar)) return false;
+  std::vector<LinkFace> link;
+  if (!is_free(c, v) || !find_link(c, v, star, link) || (to_better && star.size() > kMaxStar)) return false;
   std::vector<VertexIndex> candidates;
   for (const auto& f : link) candidates.insert(candidates.end(), f.begin(), f.end());
   std::sort(candidates.begin(), candidates.end());

@@ -10,6 +10,7 @@
 
 #include "delfront/grid_check.hpp"
 #include "delfront/surface_check.hpp"
+#include "support/support.hpp"
 #include "support/tet_fixtures.hpp"
 #include "volume/to_mesh.hpp"
 
@@ -24,6 +25,11 @@ void Facets::add(const Facets& other, Point shift, double scale) {
   }
 }
 
+std::size_t Facets::add_point(Point p) {
+  points.push_back(p);
+  return points.size() - 1;
+}
+
 void Facets::turn() {
   for (auto& face : faces) std::reverse(face.begin(), face.end());
 }
@@ -35,6 +41,16 @@ double Facets::volume() const {
     for (std::size_t k = 1; k + 1 < face.size(); ++k)
       sum += dot(points[face[0]] - origin, cross(points[face[k]] - origin, points[face[k + 1]] - origin)) / 6;
   return sum;
+}
+
+Facets sphere_facets(int levels) {
+  const Mesh mesh = sphere_surface(levels);
+  Facets sphere;
+  sphere.points.assign(mesh.points.begin(), mesh.points.end());
+  const CellBlock& triangles = *mesh.find_block(CellType::triangle);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    sphere.faces.push_back({triangles[t][0].index(), triangles[t][1].index(), triangles[t][2].index()});
+  return sphere;
 }
 
 Facets box_facets(Point low, Point high) {

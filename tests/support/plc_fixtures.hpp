@@ -16,15 +16,20 @@ struct Facets {
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> faces;  ///< any number of corners, anticlockwise seen from outside
 
-  /// @brief Append another one; equal points are welded when the model is built.
-  void add(const Facets& other, Point shift = {}, double scale = 1);
   std::vector<std::vector<std::size_t>> curves = {};  ///< chains of points
   std::vector<std::size_t> corners = {};              ///< embedded points
-  void turn();                                        ///< every face the other way round
+
+  /// @brief Append another one; equal points are welded when the model is built.
+  void add(const Facets& other, Point shift = {}, double scale = 1);
+  /// @return its index
+  std::size_t add_point(Point p);
+  void turn();  ///< every face the other way round
   /// @brief Volume enclosed, by the divergence theorem; n-gons must be flat.
   double volume() const;
 };
 
+/// @brief sphere_surface(levels).
+Facets sphere_facets(int levels);
 Facets box_facets(Point low, Point high);
 /// @brief A box whose top is a fan of n slivers from one corner, the sides meeting them.
 Facets fan_box(int n);

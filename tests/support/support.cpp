@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support/support.hpp"
 
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <array>
@@ -24,6 +25,13 @@ fs::path scratch_folder(const std::string& name) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;
+}
+
+fs::path scratch_folder() { return scratch_folder(testing::UnitTest::GetInstance()->current_test_info()->name()); }
+
+unsigned setting(const char* name, unsigned usual) {
+  const char* given = std::getenv(name);
+  return given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
 }
 
 Mesh cube_surface() {

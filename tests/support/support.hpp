@@ -15,6 +15,12 @@ std::optional<std::filesystem::path> shared_data();
 /// @brief A folder of this test's own, emptied; removed by the operating system's habits, not by us.
 std::filesystem::path scratch_folder(const std::string& name);
 
+/// @brief The same, named after the test that runs.
+std::filesystem::path scratch_folder();
+
+/// @brief A number from the environment, as nightly runs set them.
+unsigned setting(const char* name, unsigned usual);
+
 /// @brief Unit cube [0,1]^3 of 12 triangles, outward, six patches named xmin … zmax.
 Mesh cube_surface();
 /// @brief Icosphere of radius 1: 20 * 4^levels triangles, outward.

@@ -135,7 +135,10 @@ TEST(FaceTests, in_twofold_precision_are_never_wrong_and_know_ties) {
       unseen += (tests.unseen & bit) && side == 0;
     }
   }
-  if (!kHasTwofoldTests) GTEST_SKIP() << "the processor this was built for has no fused multiplication: exact at once";
+  if (!kHasTwofoldTests) {  // without a fused multiplication everything is left to the exact predicates
+    EXPECT_EQ(sure, 0);
+    return;
+  }
   EXPECT_GT(sure, 2'500'000);  // the others: ties and near-ties off any lattice, of which these cases are full
   EXPECT_GT(open, 100'000);
   EXPECT_GT(ties, 100'000);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <random>
 #include <string>
@@ -18,11 +17,6 @@
 
 namespace delfront {
 namespace {
-
-unsigned setting(const char* name, unsigned usual) {
-  const char* given = std::getenv(name);
-  return given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
-}
 
 /// Of the sharpest angle of the surface: what the worst cell must have. Cells that are flat to rounding have 1e-6
 /// degrees at most.
@@ -59,7 +53,8 @@ class Turn {
 /// Rounding may make a copy cross itself; that is refused, and rare.
 /// @param gap  width of the thinnest part of the model, of the length of its edges there
 void expect_no_flat_cells(const Model& given, const std::string& what, double gap = 1) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 6);
+  const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
+                 cases = fixtures::setting("DELFRONT_RANDOM_CASES", 6);
   unsigned refused = 0;
   for (unsigned seed = first; seed < first + cases; ++seed) {
     SCOPED_TRACE(what + ": DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");

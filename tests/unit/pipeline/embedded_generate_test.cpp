@@ -18,20 +18,10 @@ namespace {
 
 using fixtures::Facets;
 
-std::size_t add_point(Facets& body, Point p) {
-  body.points.push_back(p);
-  return body.points.size() - 1;
-}
-
 /// The unit ball with a walk of steps like the surface's edges, in two arms from one point, and points alone.
 Facets ball_with_walks(unsigned seed, int levels, int steps) {
-  const Mesh mesh = fixtures::sphere_surface(levels);
-  Facets body;
-  body.points.assign(mesh.points.begin(), mesh.points.end());
-  const CellBlock& triangles = *mesh.find_block(CellType::triangle);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    body.faces.push_back({triangles[t][0].index(), triangles[t][1].index(), triangles[t][2].index()});
-  const double h = distance(mesh.points[triangles[0][0]], mesh.points[triangles[0][1]]);
+  Facets body = fixtures::sphere_facets(levels);
+  const double h = distance(body.points[body.faces[0][0]], body.points[body.faces[0][1]]);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   const auto direction = [&] {
@@ -42,7 +32,7 @@ Facets ball_with_walks(unsigned seed, int levels, int steps) {
     return std::any_of(body.points.begin(), body.points.end(),
                        [&](const Point& q) { return distance(p, q) < 0.7 * h; });
   };
-  const std::size_t start = add_point(body, {0.1, 0.05, -0.02});
+  const std::size_t start = body.add_point({0.1, 0.05, -0.02});
   for (int arm = 0; arm < 2; ++arm) {
     std::vector<std::size_t> curve{start};
     Point d = direction();
@@ -54,14 +44,14 @@ Facets ball_with_walks(unsigned seed, int levels, int steps) {
         d = direction();
         continue;
       }
-      curve.push_back(add_point(body, next));
+      curve.push_back(body.add_point(next));
     }
     body.curves.push_back(curve);
   }
   for (int i = 0; i < 5;) {
     const Point alone = (0.3 + 0.1 * i) * direction();
     if (is_near(alone)) continue;
-    body.corners.push_back(add_point(body, alone));
+    body.corners.push_back(body.add_point(alone));
     ++i;
   }
   return body;
@@ -125,7 +115,7 @@ TEST(GenerateEmbedded, any_number_of_threads_gives_the_same_grid) {
 TEST(GenerateEmbedded, sizes_follow_the_edges_of_curves) {
   Facets body = fixtures::box_facets({0, 0, 0}, {1, 1, 1});
   std::vector<std::size_t> curve;
-  for (int i = 0; i <= 20; ++i) curve.push_back(add_point(body, {0.4 + 0.01 * i, 0.5, 0.5}));
+  for (int i = 0; i <= 20; ++i) curve.push_back(body.add_point({0.4 + 0.01 * i, 0.5, 0.5}));
   body.curves.push_back(curve);
   Context context;
   const Model model = fixtures::to_model(body);
@@ -156,9 +146,9 @@ TEST(GenerateEmbedded, what_meets_outside_of_common_vertices_is_refused) {
     Facets body = box;
     for (const auto& curve : curves) {
       body.curves.emplace_back();
-      for (const Point& p : curve) body.curves.back().push_back(add_point(body, p));
+      for (const Point& p : curve) body.curves.back().push_back(body.add_point(p));
     }
-    for (const Point& p : points) body.corners.push_back(add_point(body, p));
+    for (const Point& p : points) body.corners.push_back(body.add_point(p));
     return errors_of(body);
   };
   using Kinds = std::vector<std::string>;

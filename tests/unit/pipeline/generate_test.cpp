@@ -191,9 +191,8 @@ TEST(Generate, limits_of_cells_and_time_end_the_run) {
 
 TEST(Generate, sizes_are_met_around_a_long_edge_of_a_curve) {
   fixtures::Facets body = fixtures::box_facets({0, 0, 0}, {1, 1, 1});
-  body.points.push_back({0.02, 0.02, 0.02});
-  body.points.push_back({0.98, 0.97, 0.96});
-  body.curves.push_back({body.points.size() - 2, body.points.size() - 1});
+  const std::size_t from = body.add_point({0.02, 0.02, 0.02}), to = body.add_point({0.98, 0.97, 0.96});
+  body.curves.push_back({from, to});
   Context context;
   const Outcome outcome = generate(fixtures::to_model(body), sized(0.1), context);
   EXPECT_EQ(outcome.mesh.num_cells(CellType::line), 1u);

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 class JobLeavings : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fixtures::scratch_folder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fixtures::scratch_folder();
     run_.options.input.files = {path("body.stl")};
     run_.options.output.files = {path("grid.vtu")};
   }

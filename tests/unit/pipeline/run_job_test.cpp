@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 class RunJob : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fixtures::scratch_folder(testing::UnitTest::GetInstance()->current_test_info()->name());
+    folder_ = fixtures::scratch_folder();
     write_surface(fixtures::cube_surface());
     options_.output.files = {path("cube.vtu")};
     options_.output.report = path("report.json");

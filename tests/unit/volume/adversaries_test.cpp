@@ -14,6 +14,7 @@
 
 #include "improve/operations.hpp"
 #include "support/plc_fixtures.hpp"
+#include "support/support.hpp"
 #include "tetra/flips.hpp"
 #include "volume/thin_out.hpp"
 
@@ -28,11 +29,6 @@ using fixtures::Recovered;
 bool is_large() {
   const char* given = std::getenv("DELFRONT_ADVERSARIES");
   return given && std::string(given) == "large";
-}
-
-unsigned setting(const char* name, unsigned usual) {
-  const char* given = std::getenv(name);
-  return given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
 }
 
 /// n tetrahedra of random shape, one a cell of a lattice, in a box.
@@ -196,7 +192,8 @@ TEST(Adversaries, points_on_lattices_with_shared_faces) {
 
 /// A slab of a jagged pattern, a thousand times as wide as thick, turned out of the axes.
 TEST(Adversaries, thin_slabs_out_of_the_axes) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 300);
+  const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
+                 cases = fixtures::setting("DELFRONT_RANDOM_CASES", 300);
   for (unsigned seed = first; seed < first + cases; ++seed) {
     SCOPED_TRACE("DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");
     std::mt19937 random(seed);
@@ -236,7 +233,8 @@ TEST(Adversaries, thin_slabs_out_of_the_axes) {
 /// Random flips, insertions and removals on a recovered grid: whatever they do, it stays a valid grid of the same
 /// boundary.
 TEST(Adversaries, random_local_edits_keep_the_grid_valid) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 40);
+  const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
+                 cases = fixtures::setting("DELFRONT_RANDOM_CASES", 40);
   const Facets bodies[] = {globe(8, 1), fixtures::chazelle(2, 0.1), scattered_tets(20), drum(12, 3)};
   for (unsigned seed = first; seed < first + cases; ++seed) {
     SCOPED_TRACE("DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");

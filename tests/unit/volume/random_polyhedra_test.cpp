@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <map>
 #include <random>
@@ -17,16 +16,12 @@
 #include "delfront/errors.hpp"
 #include "delfront/surface_check.hpp"
 #include "support/plc_fixtures.hpp"
+#include "support/support.hpp"
 
 namespace delfront {
 namespace {
 
 using fixtures::Facets;
-
-unsigned setting(const char* name, unsigned usual) {
-  const char* given = std::getenv(name);
-  return given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
-}
 
 /// A linear map that shears and squeezes: Delaunay tets become what no Delaunay tetrahedrization of their vertices has.
 class RandomMap {
@@ -230,18 +225,21 @@ void expect_recovered(const Body& body, const char* kind, unsigned seed) {
 }
 
 TEST(RandomPolyhedra, sets_of_tets) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 200);
+  const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
+                 cases = fixtures::setting("DELFRONT_RANDOM_CASES", 200);
   for (unsigned seed = first; seed < first + cases; ++seed) expect_recovered(random_tets(seed), "tets", seed);
 }
 
 TEST(RandomPolyhedra, sets_of_cells) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 90);
+  const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
+                 cases = fixtures::setting("DELFRONT_RANDOM_CASES", 90);
   for (unsigned seed = first; seed < first + cases; ++seed) expect_recovered(random_cells(seed, 3), "cells", seed);
 }
 
 /// Only a border that a sheet has to itself may keep points, and then says so; the fixture compares.
 TEST(RandomPolyhedra, rooms_of_several_materials_with_sheets) {
-  const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = setting("DELFRONT_RANDOM_CASES", 150);
+  const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
+                 cases = fixtures::setting("DELFRONT_RANDOM_CASES", 150);
   for (unsigned seed = first; seed < first + cases; ++seed) {
     SCOPED_TRACE("DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");
     DomainOptions all;
