@@ -7,25 +7,30 @@
 #include <vector>
 
 #include "delfront/context.hpp"
+#include "delfront/metric.hpp"
 #include "delfront/point.hpp"
 
 namespace delfront {
 
 /// @brief Wanted size (and shape) of the cells in space; gridding asks for nothing else.
 ///
-/// Thread-safe, deterministic. Points are best given in space-filling-curve order.
+/// Thread-safe, deterministic. Points are best given in space-filling-curve order. A field has an answer everywhere,
+/// also outside of what it was made for; an infinite size is a field without an opinion.
 class SizeField {
  public:
   virtual ~SizeField() = default;
 
-  /// @brief Wanted side length at each point, model units, > 0.
+  /// @brief Wanted side length at each point, model units, > 0; of a metric the least over all directions.
+  /// @throws InputError  the field has no valid value there (place and value are named)
   virtual void sizes(std::span<const Point> at, std::span<double> size) const = 0;
 
-  /// @brief Wanted metric at each point, as (xx, xy, xz, yy, yz, zz); M = sum (delta S_i)^-2 s_i s_i^T.
-  /// The default is isotropic: size^-2 times the identity.
-  virtual void metrics(std::span<const Point> at, std::span<std::array<double, 6>> metric) const;
+  /// @brief Wanted metric at each point. The default is isotropic: size^-2 times the identity.
+  virtual void metrics(std::span<const Point> at, std::span<Metric> metric) const;
 
-  /// @brief A guaranteed lower bound of the size over a box.
+  /// @brief Whether metrics() says no more than sizes().
+  virtual bool is_isotropic() const { return true; }
+
+  /// @brief A lower bound, never violated, of the size over a box; tight where that is cheap, > 0.
   virtual double lower_bound(const Box& box) const = 0;
 
   /// @brief A value that no size exceeds, infinite where there is none.

@@ -31,14 +31,11 @@
 
 namespace delfront {
 
-void SizeField::metrics(std::span<const Point> at, std::span<std::array<double, 6>> metric) const {
+void SizeField::metrics(std::span<const Point> at, std::span<Metric> metric) const {
   DELFRONT_CHECK(at.size() == metric.size());
   std::vector<double> size(at.size());
   sizes(at, size);
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const double m = 1 / (size[i] * size[i]);
-    metric[i] = {m, 0, 0, m, 0, m};
-  }
+  for (std::size_t i = 0; i < at.size(); ++i) metric[i] = isotropic_metric(size[i]);
 }
 
 namespace {

@@ -159,10 +159,10 @@ TEST(BoundarySizeField, metrics_are_isotropic_by_default) {
   Context context;
   const auto field = build_boundary_size_field({{{0, 0, 0}, {1, 0, 0}}, {0.5, 0.25}, 1.2, 0, 1e300}, context);
   const Point at[2] = {{0, 0, 0}, {1, 0, 0}};
-  std::array<double, 6> metric[2];
+  Metric metric[2];
   field->metrics(at, metric);
-  EXPECT_EQ(metric[1], (std::array<double, 6>{16, 0, 0, 16, 0, 16}));
-  EXPECT_NEAR(metric[0][0], std::pow(field->size(at[0]), -2), 1e-12);
+  EXPECT_EQ(metric[1], (Metric{16, 0, 0, 16, 0, 16}));
+  EXPECT_NEAR(metric[0].xx, std::pow(field->size(at[0]), -2), 1e-12);
 }
 
 TEST(BoundarySizeField, refuses_what_makes_no_sense_and_says_where) {
