@@ -59,4 +59,19 @@ struct BoundarySizes {
 /// @par Source  Löhner (2008), eq. 3.16, 3.17
 std::unique_ptr<SizeField> build_boundary_size_field(const BoundarySizes& boundary, Context& context);
 
+/// @brief The minimum of several fields, or the intersection of their metrics, clamped to [hmin, hmax].
+/// @param parts  null ones are left out
+/// @throws UsageError  hmin > hmax, nothing to combine
+std::unique_ptr<SizeField> combine_size_fields(std::vector<std::shared_ptr<const SizeField>> parts, double hmin,
+                                               double hmax);
+
+/// @brief A field with sizes that rise by at most (growth - 1) / growth with distance: the given one where it keeps to
+/// that, else lowered.
+///
+/// Rises over less than half of the size are seen to as if they took that much; nothing is seen to outside `domain`.
+/// @par Cost    a sampling of the field by an octree, then that of one more search of the boundary kind a point
+/// @par Source  Löhner (2008), eq. 3.16 to 3.18
+std::shared_ptr<const SizeField> limit_growth(std::shared_ptr<const SizeField> field, const Box& domain, double growth,
+                                              Context& context);
+
 }  // namespace delfront

@@ -2,6 +2,7 @@
 #include "sizing/asked_sizes.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace delfront {
 
@@ -11,15 +12,26 @@ double largest_size(const BoundarySizes& boundary) {
   return largest;
 }
 
+bool has_field_everywhere(const SizeOptions& options) {
+  return !options.expression.delta.empty() || !options.background.file.empty() || !options.solution.file.empty();
+}
+
 std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,
                                                   Context& context) {
   boundary.growth = options.growth.value_or(kDefaultGrowth);
   if (options.hmin) boundary.hmin = options.hmin->value;
   if (options.hmax)
     boundary.hmax = options.hmax->value;
-  else if (!options.growth)
+  else if (!options.growth && !has_field_everywhere(options))
     boundary.hmax = std::max(largest, boundary.hmin);
   return build_boundary_size_field(boundary, context);
+}
+
+std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,
+                                                    std::shared_ptr<const SizeField> asked,
+                                                    const SizeOptions& options) {
+  return combine_size_fields({std::move(of_boundary), std::move(asked)}, options.hmin ? options.hmin->value : 0,
+                             options.hmax ? options.hmax->value : std::numeric_limits<double>::infinity());
 }
 
 }  // namespace delfront

@@ -13,13 +13,21 @@ inline constexpr double kDefaultGrowth = 1.2;
 /// @return the largest size of any boundary point, 0 without points
 double largest_size(const BoundarySizes& boundary);
 
+/// @brief Whether the options ask for sizes by a way that has an opinion everywhere: a formula, a grid, a solution.
+bool has_field_everywhere(const SizeOptions& options);
+
 /// @brief Sizes from the boundary (S1), as the options ask for them.
 ///
-/// Without options.growth it is kDefaultGrowth, and no size exceeds `largest`, or hmin where that is more.
+/// Without options.growth it is kDefaultGrowth, and no size exceeds `largest`, or hmin where that is more, unless
+/// has_field_everywhere.
 /// @param boundary  points and sizes; the rest of it is set from the options
 /// @param options   lengths in model units
 /// @param largest   of the boundary as it was given
 std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,
                                                   Context& context);
+
+/// @brief The lesser of both, clamped to the options' hmin and hmax.
+std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,
+                                                    std::shared_ptr<const SizeField> asked, const SizeOptions& options);
 
 }  // namespace delfront
