@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances to sets of simplices through the tree of their boxes. Each point is asked for alone, without the answer of
+// the one before, so that the last bit does not depend on the batch.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/nearest_name.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/size_expression.hpp"
+#include "fmt/format.h"
+#include "spatial/bvh.hpp"
+
+namespace delfront {
+namespace {
+
+/// Beyond a height of 1e-4 of its sides the place over a triangle is found to 1e-12 of them; slimmer ones are asked for
+/// their edges too.
+constexpr double kSlim = 1e-8;
+constexpr double kRelativeError = 1e-11;
+
+double squared_distance_to(Point p, const std::array<Point, 3>& corner) {
+  const auto& [a, b, c] = corner;
+  double best = squared_length(nearest_point_on_triangle(p, a, b, c) - p);
+  const double squared = squared_length(b - a) * squared_length(c - a);
+  if (squared_length(cross(b - a, c - a)) < kSlim * squared)
+    for (int k = 0; k < 3; ++k) {
+      const Point& from = corner[std::size_t(k)];
+      const Point& to = corner[std::size_t((k + 1) % 3)];
+      best = std::min(best, squared_length(nearest_point_on_triangle(p, from, to, to) - p));
+    }
+  return best;
+}
+
+class TreeDistanceField final : public DistanceField {
+ public:
+  explicit TreeDistanceField(const SimplexSet& set) {
+    for (const Point& p : set.points) corners_.push_back({p, p, p});
+    for (const auto& [a, b] : set.segments) corners_.push_back({a, b, b});
+    corners_.insert(corners_.end(), set.triangles.begin(), set.triangles.end());
+    if (corners_.empty()) throw UsageError("distance to an empty set: it has no points, curves or triangles");
+    std::vector<Box> boxes(corners_.size());
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      for (const Point& p : corners_[i]) {
+        if (!is_finite(p)) throw UsageError("distance to a set with a coordinate that is not finite");
+        boxes[i].add(p);
+      }
+    bvh_ = Bvh(boxes);
+  }
+
+  void distances(std::span<const Point> at, std::span<double> distance) const override {
+    for (std::size_t i = 0; i < at.size(); ++i) distance[i] = one(at[i]);
+  }
+
+  Range range(const Box& box) const override {
+    const Point centre = box.low + 0.5 * (box.high - box.low);
+    if (!is_finite(centre)) return {0, std::numeric_limits<double>::infinity()};
+    const double middle = one(centre), half = 0.5 * box.diagonal();
+    Box all = bvh_.box_of_all();
+    all.add(box);
+    double largest = 0;
+    for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(all.low[k]), std::abs(all.high[k])});
+    const double error = kRelativeError * all.diagonal() + 32 * std::numeric_limits<double>::epsilon() * largest;
+    return {std::max(0.0, middle - half - error), middle + half + error};
+  }
+
+ private:
+  double one(Point p) const {
+    if (!is_finite(p)) return std::numeric_limits<double>::quiet_NaN();
+    return std::sqrt(
+        bvh_.nearest(p, [&](std::uint32_t i) { return squared_distance_to(p, corners_[i]); }).squared_distance);
+  }
+
+  std::vector<std::array<Point, 3>> corners_;
+  Bvh bvh_;
+};
+
+std::vector<std::string> names_of(const Model& model) {
+  std::vector<std::string> names;
+  for (const Patch& patch : model.patches) names.push_back(patch.name);
+  for (const Curve& curve : model.curves) names.push_back(curve.name);
+  for (const std::string& corner : model.corner_names) names.push_back(corner);
+  for (const Region& region : model.regions) names.push_back(region.name);
+  names.erase(std::remove(names.begin(), names.end(), std::string()), names.end());
+  return names;
+}
+
+[[noreturn]] void fail_unknown(const Model& model, const std::string& name) {
+  const std::vector<std::string> known = names_of(model);
+  const std::string near = nearest_name(name, known);
+  throw UsageError(fmt::format("no patch, curve or corner is called '{}'{}; there are: {}", name,
+                               near.empty() ? "" : fmt::format("; did you mean '{}'?", near),
+                               known.empty() ? "none with a name" : fmt::format("{}", fmt::join(known, ", "))));
+}
+
+}  // namespace
+
+std::shared_ptr<const DistanceField> build_distance_field(const SimplexSet& set) {
+  return std::make_shared<TreeDistanceField>(set);
+}
+
+SimplexSet named_part(const Model& model, const std::string& name) {
+  SimplexSet set;
+  const auto add = [&](std::size_t t) {
+    const auto& [a, b, c] = model.triangles[TriangleId(t)];
+    set.triangles.push_back({model.points[a], model.points[b], model.points[c]});
+  };
+  bool is_known = false;
+  for (std::size_t p = 0; p < model.patches.size(); ++p) is_known = is_known || model.patches[PatchId(p)].name == name;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t)
+    if (model.patches[model.patch_of_triangle[TriangleId(t)]].name == name) add(t);
+  for (const Curve& curve : model.curves) {
+    if (curve.name != name) continue;
+    is_known = true;
+    for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
+      set.segments.push_back({model.points[curve.vertices[i]], model.points[curve.vertices[i + 1]]});
+  }
+  for (std::size_t i = 0; i < model.corner_names.size(); ++i) {
+    if (model.corner_names[i] != name) continue;
+    is_known = true;
+    set.points.push_back(model.points[model.corners[i]]);
+  }
+  if (is_known) return set;
+  for (const Region& region : model.regions) {
+    if (region.name != name) continue;
+    if (model.regions.size() > 1)
+      throw UsageError(
+          fmt::format("distance to '{}': of several regions the distance is not known before gridding; "
+                      "name the patches around it",
+                      name));
+    for (std::size_t t = 0; t < model.triangles.size(); ++t) add(t);
+    return set;
+  }
+  fail_unknown(model, name);
+}
+
+}  // namespace delfront
