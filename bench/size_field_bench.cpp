@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Size sources (S5): time of one evaluation for growing numbers of sources, by scanning all and by the tree.
+//
+//   size_field_bench [--sources 10,100,...] [--layout all|scattered|curves|surfaces] [--points N] [--repeat N]
+//
+// Points lie in the unit cube in Hilbert order; sources are points, segments and triangles of all three laws, scattered
+// in the cube, along curves, or on surfaces. One line a case: layout, sources, method, build seconds, million
+// evaluations a second (median), and the sum of all sizes, which must not depend on the method.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <numbers>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "base/hilbert.hpp"
+#include "delfront/size_sources.hpp"
+
+namespace {
+
+using delfront::Point;
+using delfront::SizeSource;
+
+struct Random {
+  std::mt19937_64 engine{7};
+  double unit() { return static_cast<double>(engine() >> 11) * 0x1p-53; }
+  double between(double low, double high) { return low + (high - low) * unit(); }
+  double log_between(double low, double high) { return low * std::pow(high / low, unit()); }
+  Point in_cube() {
+    const double x = unit(), y = unit();
+    return {x, y, unit()};
+  }
+};
+
+delfront::SizeLaw make_law(Random& random, std::size_t i, double delta0, double r1) {
+  delfront::SizeLaw law;
+  law.delta0 = delta0;
+  law.r1 = r1;
+  law.r0 = i % 2 ? 0 : random.between(0, 0.02);
+  const std::size_t kind = i % 3;
+  law.kind = kind == 0   ? delfront::SizeLaw::Kind::power
+             : kind == 1 ? delfront::SizeLaw::Kind::exponential
+                         : delfront::SizeLaw::Kind::polynomial;
+  law.gamma = random.between(1, 2);
+  law.polynomial = {random.between(0.5, 1.5), random.between(0, 1)};
+  return law;
+}
+
+/// A point on curve or surface number `which`, by parameters in [0, 1].
+Point on_curve(std::size_t which, double t) {
+  const double phase = static_cast<double>(which) * 2.399963, turn = 2 * std::numbers::pi * t;
+  const double radius = 0.1 + 0.03 * static_cast<double>(which % 10);
+  return {0.5 + radius * std::cos(turn + phase), 0.5 + radius * std::sin(turn + phase),
+          0.1 + 0.08 * static_cast<double>(which % 10) + 0.05 * std::sin(3 * turn)};
+}
+Point on_surface(std::size_t which, double u, double v) {
+  const double z = 2 * v - 1, turn = 2 * std::numbers::pi * u, r = std::sqrt(1 - z * z);
+  const double radius = which % 2 ? 0.3 : 0.15;
+  const Point centre = which % 2 ? Point{0.4, 0.45, 0.5} : Point{0.8, 0.8, 0.8};
+  return centre + radius * Point{r * std::cos(turn), r * std::sin(turn), z};
+}
+
+std::vector<SizeSource> make_sources(const std::string& layout, std::size_t n) {
+  Random random;
+  std::vector<SizeSource> sources;
+  const double spacing = 1 / std::sqrt(static_cast<double>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    delfront::Simplex simplex;
+    simplex.num_corners = 1 + static_cast<int>(i / 3 % 3);
+    double delta0 = random.log_between(0.001, 0.1), r1 = random.log_between(0.05, 1);
+    if (layout == "scattered") {
+      simplex.corner[0] = random.in_cube();
+      for (std::size_t k = 1; k < 3; ++k)
+        simplex.corner[k] = simplex.corner[0] + 0.05 * (random.in_cube() - Point{0.5, 0.5, 0.5});
+    } else if (layout == "curves") {
+      const std::size_t curve = i % 10;
+      const double t = static_cast<double>(i / 10) * 10 / static_cast<double>(n), dt = 10 / static_cast<double>(n);
+      simplex.corner = {on_curve(curve, t), on_curve(curve, t + dt), on_curve(curve, t + 0.5 * dt) + Point{0, 0, 0.01}};
+      delta0 = 0.002 * (1 + 0.5 * std::sin(20 * t)) * (1 + 0.2 * static_cast<double>(curve));
+      r1 = 0.05 + 0.05 * static_cast<double>(curve % 3);
+    } else {
+      const double u = random.unit(), v = random.unit();
+      simplex.corner = {on_surface(i, u, v), on_surface(i, u + 0.5 * spacing, v),
+                        on_surface(i, u, std::min(1.0, v + 0.5 * spacing))};
+      delta0 = 0.005 * (1.5 + std::sin(9 * u)) * random.between(0.9, 1.1);
+      r1 = 0.1;
+    }
+    sources.push_back({simplex, make_law(random, i, delta0, r1), {}, {}, ""});
+  }
+  return sources;
+}
+
+std::vector<Point> make_points(std::size_t n) {
+  Random random;
+  std::vector<Point> points, ordered;
+  for (std::size_t i = 0; i < n; ++i) points.push_back(random.in_cube());
+  for (const std::uint32_t i : delfront::hilbert_order(points)) ordered.push_back(points[i]);
+  return ordered;
+}
+
+double seconds_of(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void run_case(const std::string& layout, std::size_t n, bool is_tree, std::size_t num_points, int repeat) {
+  delfront::Context context;
+  std::vector<SizeSource> sources = make_sources(layout, n);
+  delfront::SourceFieldOptions options;
+  options.search = is_tree ? delfront::SourceSearch::tree : delfront::SourceSearch::scan;
+  std::unique_ptr<delfront::SizeField> field;
+  const double build = seconds_of([&] { field = build_source_size_field(std::move(sources), options, context); });
+  // Scanning: fewer points, so that a case stays within seconds.
+  const std::size_t scanned = std::max<std::size_t>(1000, 100'000'000 / n);
+  const std::vector<Point> all = make_points(num_points);
+  const std::size_t step = is_tree ? 1 : std::max<std::size_t>(1, num_points / scanned);
+  std::vector<Point> at;
+  for (std::size_t i = 0; i < all.size(); i += step) at.push_back(all[i]);
+  std::vector<double> size(at.size()), times;
+  for (int i = 0; i < repeat; ++i) times.push_back(seconds_of([&] { field->sizes(at, size); }));
+  std::sort(times.begin(), times.end());
+  double sum = 0;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (is_tree ? i % std::max<std::size_t>(1, num_points / scanned) == 0 : true) sum += size[i];
+  fmt::print("{:10} {:7} {:5} {:8.3f} {:9.4f} {:.15g}\n", layout, n, is_tree ? "tree" : "scan", build,
+             static_cast<double>(at.size()) / times[times.size() / 2] * 1e-6, sum);
+  std::fflush(stdout);
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::vector<std::string> result;
+  std::istringstream stream(text);
+  for (std::string word; std::getline(stream, word, ',');) result.push_back(word);
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> layouts = {"scattered", "curves", "surfaces"}, methods = {"scan", "tree"};
+  std::vector<std::string> counts = {"10", "100", "1000", "10000", "100000"};
+  std::size_t num_points = 1'000'000;
+  int repeat = 3;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string key = argv[i], value = argv[i + 1];
+    if (key == "--sources") counts = words(value);
+    if (key == "--layout" && value != "all") layouts = words(value);
+    if (key == "--methods") methods = words(value);
+    if (key == "--points") num_points = static_cast<std::size_t>(std::strtod(value.c_str(), nullptr));
+    if (key == "--repeat") repeat = std::atoi(value.c_str());
+  }
+  fmt::print("layout     sources  how   build s  Meval/s   sum of sizes\n");
+  for (const std::string& layout : layouts)
+    for (const std::string& count : counts)
+      for (const std::string& method : methods)
+        run_case(layout, static_cast<std::size_t>(std::strtod(count.c_str(), nullptr)), method == "tree", num_points,
+                 repeat);
+  return 0;
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sizing/source_tree.hpp"
+
+namespace delfront {
+
+/// @brief Makes the nodes of a SourceTree, see there.
+class SourceTreeBuilder {
+ public:
+  static constexpr std::size_t kWidth = 8, kBins = 32;
+  static constexpr std::uint32_t kTermBit = 0x80000000u;
+  struct Node {
+    float low[3][kWidth], high[3][kWidth];
+    float reach[kBins][kWidth];  // squared; negative: never
+    std::uint32_t child[kWidth];
+  };
+
+  SourceTreeBuilder(const std::vector<SourceTerm>& terms, Point centre, double extent);
+  /// @brief Sizes in a geometric row from the least delta0.
+  void choose_first_sizes();
+  /// @brief Quantiles of the sizes of the field at places of a sample.
+  void choose_sizes(std::vector<double> sample);
+  /// @return terms in the order of the leaves; a child with kTermBit is a place in it
+  std::vector<std::uint32_t> build(Context& context);
+
+  const std::array<double, kBins>& edges() const { return edge_; }
+  const std::vector<Node>& nodes() const { return nodes_; }
+
+ private:
+  static constexpr std::size_t kSamples = 8;  // of the sizes, for the expected work
+  static constexpr std::size_t kPlanes = 16;
+  struct Item {
+    float low[3], high[3];
+    float key[4];              // centre, and the first bin that it reaches in
+    float reach[kSamples];
+    std::uint32_t term;
+  };
+  struct Cluster {
+    std::uint32_t begin = 0, end = 0;
+    double cost = 0;
+    std::uint32_t size() const { return end - begin; }
+  };
+  struct Bounds;
+
+  void set_tables();
+  std::uint32_t build_node(Cluster all, int depth, Context& context);
+  void set_child(Node& node, std::size_t lane, const Cluster& cluster) const;
+  Cluster make_cluster(std::uint32_t begin, std::uint32_t end) const;
+  std::uint32_t split(const Cluster& cluster, int depth);
+
+  const std::vector<SourceTerm>& terms_;
+  Point centre_;
+  double extent_, smallest_;
+  std::array<double, kBins> edge_{};
+  std::vector<float> reach_;  // (terms, kBins), in units of the extent; negative: never
+  std::vector<Item> items_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace delfront
