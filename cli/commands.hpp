@@ -8,6 +8,7 @@
 #include "delfront/context.hpp"
 #include "delfront/findings.hpp"
 #include "delfront/grid_check.hpp"
+#include "delfront/job.hpp"
 #include "delfront/mesh.hpp"
 #include "terminal.hpp"
 
@@ -40,7 +41,7 @@ class Command {
   CommonFlags common_;
 };
 
-std::unique_ptr<Command> make_mesh_command(CLI::App& app);
+std::unique_ptr<Command> make_job_command(CLI::App& app, JobKind kind);
 std::unique_ptr<Command> make_check_command(CLI::App& app);
 std::unique_ptr<Command> make_info_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);

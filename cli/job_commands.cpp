@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// delfront mesh: options from a job file, flags and --set become Options; run_job does the work.
+// delfront mesh, estimate, sizes: options from a job file, flags and --set become Options; run_job does the work.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -34,12 +35,37 @@ bool is_job_file(const std::string& path) {
   return extension == ".toml" || extension == ".json";
 }
 
-class MeshCommand : public Command {
+const char* const kEstimateExamples =
+    "The size field is summed up over the domain, as `mesh` would grid it with the same options.\n"
+    "Examples:\n"
+    "  delfront estimate case.toml\n"
+    "  delfront estimate car.stl --farfield box:10c --growth 1.2 --report estimate.json";
+
+const char* const kSizesExamples =
+    "Writes hexahedra of an octree (in the plane quads) with the wanted size as the field h at its points.\n"
+    "Examples:\n"
+    "  delfront sizes case.toml -o sizes.vtu\n"
+    "  delfront sizes car.stl --farfield box:10c --size \"0.05 + 0.1*abs(z)\" -o sizes.vtu";
+
+struct Words {
+  const char *name, *help, *footer;
+};
+
+Words words_of(JobKind kind) {
+  if (kind == JobKind::estimate)
+    return {"estimate", "Cells, memory and time of a job, before it is run", kEstimateExamples};
+  if (kind == JobKind::sizes) return {"sizes", "Write the size field of a job, to look at", kSizesExamples};
+  return {"mesh", "Grid what a surface bounds (FILE: surfaces, or one job file)", kExamples};
+}
+
+/// The commands that take a job: all have the same flags.
+class JobCommand : public Command {
  public:
-  explicit MeshCommand(CLI::App& parent) {
-    app = parent.add_subcommand("mesh", "Grid what a surface bounds (FILE: surfaces, or one job file)");
+  JobCommand(CLI::App& parent, JobKind kind) : kind_(kind) {
+    const Words words = words_of(kind);
+    app = parent.add_subcommand(words.name, words.help);
     app->allow_extras();
-    app->footer(kExamples);
+    app->footer(words.footer);
     app->add_option("FILE", files_, "surface files, gridded together; or a job file (.toml, .json)");
     for (const OptionRow& row : option_table())
       if (!row.flags.empty()) add_row_flag(row);
@@ -64,11 +90,12 @@ class MeshCommand : public Command {
     Terminal terminal = make_terminal();
     Context context;
     prepare(context, terminal);
-    const JobResult result = run_job(options, context, command_line);
+    const JobResult result = run_job(options, context, command_line, kind_);
     terminal.clear_bar();
     if (!result.error.empty()) show_failure(result, terminal);
     if (result.exit_code == ExitCode::done || result.exit_code == ExitCode::gate_not_met)
-      if (terminal.verbosity() >= 0) print_summary(result, options);
+      if (terminal.verbosity() >= 0)
+        result.estimate ? print_estimate(*result.estimate) : print_summary(result, options);
     return static_cast<int>(result.exit_code);
   }
 
@@ -190,6 +217,22 @@ class MeshCommand : public Command {
     return warnings;
   }
 
+  static void print_estimate(const Estimate& e) {
+    fmt::print("cells          {}{}\n", e.is_at_least ? "at least " : "about ", with_commas(rounded(e.cells)));
+    fmt::print("points         about {}\n", with_commas(rounded(e.points)));
+    fmt::print("sizes          {:.4g} to {:.4g}\n", e.least_size, e.greatest_size);
+    fmt::print("memory         about {}\n",
+               e.memory < 1e9 ? fmt::format("{:.0f} MB", e.memory / 1e6) : fmt::format("{:.1f} GB", e.memory / 1e9));
+    fmt::print("time           about {}\n",
+               e.seconds < 120 ? fmt::format("{:.2g} s", e.seconds) : fmt::format("{:.0f} min", e.seconds / 60));
+  }
+
+  /// To three digits: more would be made up.
+  static std::size_t rounded(double value) {
+    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(value, 1.0))) - 2));
+    return static_cast<std::size_t>(std::min(unit * std::round(value / unit), 1e18));
+  }
+
   static void print_summary(const JobResult& result, const Options& options) {
     print_mesh_facts(result.mesh);
     const QualityReport& quality = result.report.quality;
@@ -215,10 +258,13 @@ class MeshCommand : public Command {
   std::map<std::string, std::vector<std::string>> typed_, shorthands_;
   std::map<std::string, bool> shorthand_flags_;
   bool print_config_ = false;
+  JobKind kind_;
 };
 
 }  // namespace
 
-std::unique_ptr<Command> make_mesh_command(CLI::App& app) { return std::make_unique<MeshCommand>(app); }
+std::unique_ptr<Command> make_job_command(CLI::App& app, JobKind kind) {
+  return std::make_unique<JobCommand>(app, kind);
+}
 
 }  // namespace delfront::cli

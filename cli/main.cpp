@@ -69,7 +69,9 @@ int parse_and_run(int argc, char** argv) {
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.allow_extras();
   std::vector<std::unique_ptr<Command>> commands;
-  commands.push_back(make_mesh_command(app));
+  commands.push_back(make_job_command(app, JobKind::grid));
+  commands.push_back(make_job_command(app, JobKind::estimate));
+  commands.push_back(make_job_command(app, JobKind::sizes));
   commands.push_back(make_check_command(app));
   commands.push_back(make_info_command(app));
   commands.push_back(make_convert_command(app));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "delfront/mesh.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
+#include "delfront/size_field.hpp"
 #include "delfront/surface_check.hpp"
 
 namespace delfront {
@@ -62,10 +64,15 @@ struct Outcome {
 };
 
 /// @brief The whole run on one screen: a model to a tetrahedral grid whose boundary is the model's triangles.
+/// @param asked  a field that lowers the sizes which come from the boundary and options.size; null: none. Ways to ask
+/// in
+///               options.size that need more than the boundary (sources, formulas, files, …) are built into such a
+///               field by build_job_size_field.
 /// @throws InputError    the surface cannot bound a volume (places and reasons)
 /// @throws MeshingError  gridding failed after all recovery steps
 /// @throws LimitError, Cancelled
 /// @par Threads  the same grid for any number
-Outcome generate(Model model, const Options& options, Context& context);
+Outcome generate(Model model, const Options& options, Context& context,
+                 std::shared_ptr<const SizeField> asked = nullptr);
 
 }  // namespace delfront

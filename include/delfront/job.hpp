@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "delfront/context.hpp"
 #include "delfront/generate.hpp"
+#include "delfront/model.hpp"
 #include "delfront/options.hpp"
 
 namespace delfront {
@@ -36,6 +38,23 @@ struct InputFile {
   std::size_t num_points = 0, num_cells = 0;
 };
 
+/// @brief What a job is run for.
+enum class JobKind : std::uint8_t {
+  grid,      ///< the whole of it
+  estimate,  ///< how many cells, how much memory and time; writes nothing but the report
+  sizes,     ///< the size field on an octree, written to output.files (VTU)
+};
+
+/// @brief What a grid of the wanted sizes will take, from the integral of h^-3 (in the plane h^-2) over the domain.
+struct Estimate {
+  double cells = 0, points = 0;
+  double measure = 0;                        ///< volume or area that is gridded
+  double least_size = 0, greatest_size = 0;  ///< of the field, at samples
+  double memory = 0;                         ///< bytes at the peak
+  double seconds = 0;                        ///< of the whole run, on a core of about 2.5 GHz a thread
+  bool is_at_least = false;                  ///< sizes are finer in places than was looked at
+};
+
 /// @brief How a job ended and all that a front end may want to show.
 struct JobResult {
   ExitCode exit_code = ExitCode::done;
@@ -57,7 +76,18 @@ struct JobResult {
   std::vector<StageTime> stage_times;
   double seconds = 0;
   std::uint64_t peak_memory = 0;  ///< bytes
+  std::optional<Estimate> estimate;
 };
+
+/// @brief All ways of options.size that ask for sizes, but for hmin, hmax and the boundary's own, as one field.
+/// @param options  lengths in model units
+/// @param model    whose names sizes may be asked on
+/// @param domain   box of all that will be gridded
+/// @return null where nothing of the kind is asked for
+/// @throws UsageError  an entry that makes no sense: its place in the job file, what is wrong, what is allowed
+/// @throws InputError  a file that cannot be read or has bad sizes
+std::shared_ptr<const SizeField> build_job_size_field(const Options& options, const Model& model, const Box& domain,
+                                                      Context& context);
 
 /// @brief A whole job: read, check, enclose, grid, improve, gates, write, report.
 ///
@@ -69,7 +99,8 @@ struct JobResult {
 /// put into `context`.
 /// @param command  what the user typed, for the report
 /// @post  each of files_written is complete; no other output exists that was not there before
-JobResult run_job(const Options& options, Context& context, const std::string& command = "");
+JobResult run_job(const Options& options, Context& context, const std::string& command = "",
+                  JobKind kind = JobKind::grid);
 
 /// @brief The report as JSON text, with the effective options; `command` is what the user typed.
 std::string report_json(const JobResult& result, const Options& options, const std::string& command);

@@ -57,9 +57,99 @@ struct BoundaryOptions {
   std::string set_at = {};  ///< as Options::set_at
 };
 
+/// @brief Sizes by formulas in x, y, z, pi, e and distance("name") (S2); empty: not asked for.
+struct ExpressionOptions {
+  std::string delta;                      ///< size, model units
+  std::string s1, s2;                     ///< stretchings
+  std::array<std::string, 3> first = {};  ///< their directions
+  std::array<std::string, 3> second = {};
+};
+
+/// @brief Turning and stretching that sources and formulas may have (spec S; lengths are delta s1, delta s2, delta).
+struct StretchOptions {
+  double s1 = 1, s2 = 1;
+  Point first{1, 0, 0}, second{0, 1, 0};
+};
+
+struct MotionOptions {
+  Point velocity, centre, axis;  ///< model units a time unit; axis of turning, any length
+  double rate = 0;               ///< degrees a time unit
+};
+
+/// @brief One entry of [[size.source]] (S4).
+struct SourceOptions {
+  std::string type;       ///< point line polyline triangle surface
+  std::vector<Point> at;  ///< point: any number, line: 2, polyline: 2 or more, triangle: 3
+  std::string file;       ///< surface: a file of facets
+  std::optional<Length> delta0;
+  Length r0, r1{1, "c"};
+  std::string law = "power";  ///< power exponential polynomial
+  double gamma = 1;
+  std::vector<double> coefficients;  ///< of the polynomial
+  std::optional<StretchOptions> stretch;
+  std::optional<MotionOptions> motion;
+  std::string group;
+};
+
+/// @brief One entry of [[size.box]] (S3): a constant size in a region, growing outside of it.
+struct SizeBoxOptions {
+  std::string shape = "box";      ///< box sphere cylinder cone surface
+  std::optional<Point> min, max;  ///< box
+  std::optional<Point> centre;    ///< sphere
+  std::optional<Point> from, to;  ///< cylinder, cone: ends of the axis
+  std::optional<Length> radius;   ///< sphere, cylinder; cone: at `from`
+  Length radius_to;               ///< cone: at `to`
+  std::string file;               ///< surface: a closed one
+  std::optional<Length> h;
+};
+
+/// @brief [size.on.NAME] (S7): the size on patches, curves and corners of that name.
+struct SizeOnOptions {
+  std::string name;  ///< a pattern with * and ?
+  std::optional<Length> h;
+};
+
+/// @brief Sizes at the nodes of a grid (S6).
+struct BackgroundFileOptions {
+  std::string file;
+  std::string size = "h";  ///< a scalar field
+  std::string metric;      ///< a tensor field instead
+  std::string combine = "min";
+  double factor = 1;
+};
+
+/// @brief Sizes from fields of a solution (S12).
+struct SolutionFileOptions {
+  std::string file;
+  std::vector<std::string> sensor;    ///< scalar fields
+  std::string indicator = "hessian";  ///< hessian error
+  double norm = 2;                    ///< p of L^p
+  double complexity = 0;              ///< wanted; 0: not set
+  double hgrad = 1.5;
+};
+
+/// @brief Cells across gaps and between lines that come close (S10).
+struct GapOptions {
+  double cells = 0;  ///< 0: not asked for
+  std::optional<Length> hmin;
+};
+
 struct SizeOptions {
   std::optional<Length> hmin, hmax;
-  std::optional<double> growth;  ///< > 1; absent: 1.2, and cells no larger than the largest boundary edges
+  std::optional<double> growth;     ///< > 1; absent: 1.2, and cells no larger than the largest boundary edges
+  double curvature = 0;             ///< cells per 2 pi; 0: not asked for
+  double angle = 0;                 ///< degrees between neighbouring faces; 0: not asked for
+  std::optional<Length> deviation;  ///< of chords from the surface
+  GapOptions gap;
+  GapOptions proximity;  ///< of curves within a patch
+  ExpressionOptions expression;
+  BackgroundFileOptions background;
+  SolutionFileOptions solution;
+  std::vector<SourceOptions> sources;
+  std::vector<SizeBoxOptions> boxes;
+  std::vector<SizeOnOptions> on;
+  std::vector<std::string> without;  ///< groups of sources that are left out
+  double time = 0;                   ///< for sources that move
 };
 
 /// @brief Grids in the plane.

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -80,13 +81,13 @@ struct PlanarDomain {
 ///
 /// With options.planar.boundary = "keep" the boundary's points are the given ones, bit for bit, in the same order, and
 /// no other point lies on it; with "split" segments are divided where sizes or angles ask for it. Sizes come from the
-/// boundary and options.size; `size`, where given, lowers them.
+/// boundary and options.size; `asked`, where given, lowers them.
 /// @throws InputError    segments that cross (places), nothing bounded, a coordinate not finite
 /// @throws LimitError, Cancelled
 /// @par Threads  one; the same grid for any number
 /// @par Cost     about 0.4 microseconds a triangle on one core
 Outcome generate_planar(const PlanarDomain& domain, const Options& options, Context& context,
-                        const SizeField* size = nullptr);
+                        std::shared_ptr<const SizeField> asked = nullptr);
 
 /// @brief What keeps a domain from being gridded: crossing segments, nothing bounded, each with its places.
 /// @return empty for a domain that generate_planar takes

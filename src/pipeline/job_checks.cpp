@@ -147,6 +147,32 @@ void check_job(const Options& options) {
   check_files(options);
 }
 
+/// Of sources, boxes and names; errors are said with the entry's place.
+static void resolve_entries(Options& options, const LengthScale& scale) {
+  const auto resolve = [&](const std::string& entry, const char* name, auto& length) {
+    const std::string key = fmt::format("{}.{}", entry, name);
+    if constexpr (std::is_same_v<std::decay_t<decltype(length)>, Length>)
+      check_key(options, key, [&] { length = Length{resolve_length(length, scale), ""}; });
+    else if (length)
+      check_key(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
+  };
+  for (std::size_t i = 0; i < options.size.sources.size(); ++i) {
+    const std::string entry = fmt::format("size.source[{}]", i);
+    SourceOptions& source = options.size.sources[i];
+    resolve(entry, "delta0", source.delta0);
+    resolve(entry, "r0", source.r0);
+    resolve(entry, "r1", source.r1);
+  }
+  for (std::size_t i = 0; i < options.size.boxes.size(); ++i) {
+    const std::string entry = fmt::format("size.box[{}]", i);
+    SizeBoxOptions& box = options.size.boxes[i];
+    resolve(entry, "h", box.h);
+    resolve(entry, "radius", box.radius);
+    resolve(entry, "radius_to", box.radius_to);
+  }
+  for (SizeOnOptions& on : options.size.on) resolve("size.on." + on.name, "h", on.h);
+}
+
 void resolve_lengths(Options& options, const LengthScale& scale) {
   const auto resolve = [&](const char* key, auto& length) {
     if (length) check_key(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
@@ -154,6 +180,10 @@ void resolve_lengths(Options& options, const LengthScale& scale) {
   resolve("size.hmin", options.size.hmin);
   resolve("size.hmax", options.size.hmax);
   resolve("domain.enclose.h", options.domain.enclose.h);
+  resolve("size.deviation", options.size.deviation);
+  resolve("size.gap.hmin", options.size.gap.hmin);
+  resolve("size.proximity.hmin", options.size.proximity.hmin);
+  resolve_entries(options, scale);
   EncloseOptions& enclose = options.domain.enclose;
   if (enclose.size.value > 0)
     check_key(options, "domain.enclose.size", [&] { enclose.size = {resolve_length(enclose.size, scale), ""}; });

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "delfront/errors.hpp"
@@ -149,22 +150,24 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::vector<int> key_lines_;  ///< of the keys whose values are not complete yet
 };
 
+/// Keys whose texts are paths; entries of a list of tables are taken by the names of the tables.
+bool is_path(const std::string& key) {
+  static const std::set<std::string> paths = {"input.files",        "output.files",     "output.report",
+                                              "output.defects",     "size.background",  "size.background.file",
+                                              "size.solution.file", "size.source.file", "size.box.file"};
+  return paths.count(key) > 0;
+}
+
 /// Paths in a job file are relative to its folder; make them relative to where we are.
-void resolve_paths(JobValue& tree, const fs::path& folder) {
-  const auto resolve = [&folder](JobValue& value) {
-    const auto one = [&folder](JobValue& item) {
-      if (item.is(JobValue::Kind::text) && !item.text.empty() && fs::path(item.text).is_relative())
-        item.text = (folder / item.text).lexically_normal().string();
-    };
-    one(value);
-    for (JobValue& item : value.items) one(item);
-  };
-  for (std::size_t i = 0; i < tree.items.size(); ++i)
-    for (std::size_t k = 0; k < tree.items[i].names.size(); ++k) {
-      const std::string key = tree.names[i] + "." + tree.items[i].names[k];
-      if (key == "input.files" || key == "output.files" || key == "output.report" || key == "output.defects")
-        resolve(tree.items[i].items[k]);
-    }
+void resolve_paths(JobValue& value, const std::string& key, const fs::path& folder) {
+  if (value.is(JobValue::Kind::text) && is_path(key) && !value.text.empty() && fs::path(value.text).is_relative())
+    value.text = (folder / value.text).lexically_normal().string();
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    resolve_paths(value.items[i],
+                  !value.is(JobValue::Kind::table) ? key
+                  : key.empty()                    ? value.names[i]
+                                                   : key + "." + value.names[i],
+                  folder);
 }
 
 }  // namespace
@@ -207,7 +210,7 @@ void read_job_file(const std::string& path, Options& options) {
   const bool is_json = fs::path(path).extension() == ".json";
   JobValue tree = is_json ? parse_json(text, path) : parse_toml(text, path);
   if (!tree.is(JobValue::Kind::table)) throw UsageError(fmt::format("{}: expected a table of options", path));
-  resolve_paths(tree, fs::path(path).parent_path());
+  resolve_paths(tree, "", fs::path(path).parent_path());
   apply_value(options, "", tree,
               [&path](int line) { return line > 0 ? fmt::format("{}:{}: ", path, line) : fmt::format("{}: ", path); });
 }

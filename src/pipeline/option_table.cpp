@@ -11,157 +11,13 @@
 #include <optional>
 
 #include "delfront/errors.hpp"
+#include "pipeline/option_rows.hpp"
 #include "pipeline/quantities.hpp"
+#include "pipeline/size_options.hpp"
 
 namespace delfront {
 
 namespace {
-
-const char* const kLengthAllowed =
-    "a length: a number in model units, or a text such as \"5%\" (of the bounding box's diagonal), \"20c\" (longest "
-    "sides), \"2 mm\"";
-
-std::string as_text(const JobValue& value) {
-  if (!value.is(JobValue::Kind::text)) throw BadValue("got " + describe(value));
-  return value.text;
-}
-
-double as_number(const JobValue& value) {
-  if (!value.is_number() || !std::isfinite(value.number)) throw BadValue("got " + describe(value));
-  return value.number;
-}
-
-double as_number_between(const JobValue& value, double low, double high) {
-  const double number = as_number(value);
-  if (number < low || number > high) throw BadValue("got " + describe(value));
-  return number;
-}
-
-std::uint64_t as_count(const JobValue& value) {
-  const double number = as_number_between(value, 0, 1e18);
-  if (number != std::floor(number)) throw BadValue("got " + describe(value));
-  return value.is(JobValue::Kind::integer) ? static_cast<std::uint64_t>(value.integer)
-                                           : static_cast<std::uint64_t>(number);
-}
-
-Length as_length(const JobValue& value) {
-  const Length length = value.is_number() ? Length{as_number(value), ""} : parse_length(as_text(value));
-  if (length.value <= 0) throw BadValue(fmt::format("got {}, which is not positive", describe(value)));
-  return length;
-}
-
-JobValue length_value(const Length& length) {
-  return length.unit.empty() ? JobValue::of(length.value) : JobValue::of(to_text(length));
-}
-
-/// Numbers of a list, or of "1,2,3".
-std::vector<double> as_numbers(const JobValue& value) {
-  std::vector<double> result;
-  if (value.is(JobValue::Kind::list)) {
-    for (const JobValue& item : value.items) result.push_back(as_number(item));
-    return result;
-  }
-  const std::string text = as_text(value);
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    result.push_back(parse_number(text.substr(begin, end - begin), "number"));
-    begin = end + 1;
-  }
-  return result;
-}
-
-Point as_point(const JobValue& value) {
-  const std::vector<double> x = as_numbers(value);
-  if (x.size() != 3) throw BadValue(fmt::format("a point has three coordinates, got {}", x.size()));
-  return {x[0], x[1], x[2]};
-}
-
-// --- rows of the common types; `at` gives the field of (const or not) Options -----------------------------------
-
-template <class At>
-OptionRow text_row(const char* key, const char* flags, const char* metavar, const char* help, At at,
-                   std::vector<std::string> choices = {}) {
-  OptionRow row{key, Takes::text, flags, metavar, help, "a text", {}, {}};
-  if (!choices.empty()) row.allowed = fmt::format("one of {}", fmt::join(choices, ", "));
-  row.set = [at, choices](Options& o, const JobValue& v) {
-    const std::string text = as_text(v);
-    if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end())
-      throw BadValue("got " + describe(v) + did_you_mean(text, choices));
-    at(o) = text;
-  };
-  row.get = [at](const Options& o) { return at(o).empty() ? JobValue() : JobValue::of(at(o)); };
-  return row;
-}
-
-template <class At>
-OptionRow texts_row(const char* key, const char* flags, const char* metavar, const char* help, At at) {
-  OptionRow row{key, Takes::texts, flags, metavar, help, "a list of texts", {}, {}};
-  row.set = [at](Options& o, const JobValue& v) {
-    std::vector<std::string> texts;
-    if (v.is(JobValue::Kind::text)) {
-      texts.push_back(v.text);
-    } else {
-      if (!v.is(JobValue::Kind::list)) throw BadValue("got " + describe(v));
-      for (const JobValue& item : v.items) texts.push_back(as_text(item));
-    }
-    for (const std::string& text : texts)
-      if (text.empty()) throw BadValue("got an empty text");
-    at(o) = std::move(texts);
-  };
-  row.get = [at](const Options& o) {
-    JobValue list = JobValue::list();
-    for (const std::string& text : at(o)) list.items.push_back(JobValue::of(text));
-    return list;
-  };
-  return row;
-}
-
-template <class At>
-OptionRow length_row(const char* key, const char* flags, const char* help, At at) {
-  OptionRow row{key, Takes::length, flags, "LENGTH", help, kLengthAllowed, {}, {}};
-  row.set = [at](Options& o, const JobValue& v) { at(o) = as_length(v); };
-  row.get = [at](const Options& o) {
-    const std::optional<Length> length = at(o);
-    return length ? length_value(*length) : JobValue();
-  };
-  return row;
-}
-
-template <class At>
-OptionRow number_row(const char* key, const char* flags, const char* metavar, const char* help, const char* allowed,
-                     double low, double high, At at) {
-  OptionRow row{key, Takes::number, flags, metavar, help, allowed, {}, {}};
-  row.set = [=](Options& o, const JobValue& v) { at(o) = as_number_between(v, low, high); };
-  row.get = [at](const Options& o) {
-    const std::optional<double> number = at(o);
-    return number ? JobValue::of(*number) : JobValue();
-  };
-  return row;
-}
-
-template <class At>
-OptionRow boolean_row(const char* key, const char* help, At at) {
-  OptionRow row{key, Takes::boolean, "", "", help, "true or false", {}, {}};
-  row.set = [at](Options& o, const JobValue& v) {
-    if (!v.is(JobValue::Kind::boolean)) throw BadValue("got " + describe(v));
-    at(o) = v.boolean;
-  };
-  row.get = [at](const Options& o) { return JobValue::of(bool(at(o))); };
-  return row;
-}
-
-template <class At>
-OptionRow count_row(const char* key, const char* flags, const char* help, const char* allowed, At at) {
-  OptionRow row{key, Takes::count, flags, "N", help, allowed, {}, {}};
-  row.set = [at](Options& o, const JobValue& v) {
-    using Value = std::remove_reference_t<decltype(at(o))>;
-    const std::uint64_t count = as_count(v);
-    if (count > static_cast<std::uint64_t>(std::numeric_limits<Value>::max())) throw BadValue("got " + describe(v));
-    at(o) = static_cast<Value>(count);
-  };
-  row.get = [at](const Options& o) { return JobValue::of(static_cast<std::int64_t>(at(o))); };
-  return row;
-}
 
 // --- rows that are one of a kind -----------------------------------------------------------------------------
 
@@ -279,15 +135,6 @@ OptionRow memory_row() {
       [](const Options& o) { return JobValue::of(static_cast<std::int64_t>(o.limits.memory)); }};
 }
 
-/// The option `growth` alone may be absent, so it is a row of its own kind.
-OptionRow growth_row() {
-  return number_row(
-      "size.growth", "--growth", "RATIO",
-      "ratio of neighbouring sizes; given: cells grow without other bound than hmax; absent: 1.2, and no "
-      "cell larger than the largest boundary edge",
-      "a number over 1, at most 10", 1 + 1e-9, 10, [](auto& o) -> auto& { return o.size.growth; });
-}
-
 const std::vector<std::string> kUnits = {"m", "mm", "in", "ft"};
 const std::vector<std::string> kStages = {"geometry", "surface", "volume", "improve", "write"};
 
@@ -322,13 +169,7 @@ std::vector<OptionRow> build_table() {
       "domain.enclose.h", "--farfield-h",
       "side of the far field's triangles; by default from its size, and at most hmax",
       [](auto& o) -> auto& { return o.domain.enclose.h; }));
-  add(length_row(
-      "size.hmin", "--hmin,--clmin", "no cell side asked for below this",
-      [](auto& o) -> auto& { return o.size.hmin; }));
-  add(length_row(
-      "size.hmax", "--hmax,--clmax", "no cell side asked for above this",
-      [](auto& o) -> auto& { return o.size.hmax; }));
-  add(growth_row());
+  add_size_rows(t);
   add(text_row("planar.boundary", "--boundary", "keep|split",
                "grids in the plane: keep the given boundary points and no others, or split segments by size",
                [](auto& o) -> auto& { return o.planar.boundary; }, {"keep", "split"}));
@@ -394,32 +235,46 @@ const std::vector<OptionRow>& option_table() {
   return table;
 }
 
-const std::vector<BoundaryRow>& boundary_table() {
+static EntryTable boundary_table() {
   static const std::vector<std::string> kinds = {"wall",     "patch", "inlet", "outlet", "farfield",
                                                  "symmetry", "empty", "wedge", "cyclic", "interface"};
-  static const std::vector<BoundaryRow> table = {
+  const auto boundaries = [](auto& o) -> auto& { return o.boundaries; };
+  EntryTable table = named_table<BoundaryOptions>("boundaries", boundaries);
+  table.note = [](Options& o, std::size_t i, const std::string& name, const std::string& place) {
+    BoundaryOptions& boundary = o.boundaries[i];
+    if (name == "select" || boundary.set_at.empty()) boundary.set_at = place;
+  };
+  add_entry<BoundaryOptions>(
+      table, boundaries,
       {"select", Takes::select, "which patches it is made of, by name with * and ?; by default the one of its own name",
-       "a name, or { name = \"wing*\" }",
-       [](BoundaryOptions& b, const JobValue& v) {
-         const JobValue* name = v.is(JobValue::Kind::table) && v.items.size() == 1 ? v.find("name") : nullptr;
-         if (v.is(JobValue::Kind::table) && !name)
-           throw BadValue("selecting by anything but name is" + planned_note("boundaries.*.select.id").substr(1));
-         b.select = as_text(name ? *name : v);
-       },
-       [](const BoundaryOptions& b) {
-         if (b.select.empty()) return JobValue();
-         JobValue value = JobValue::table();
-         value.add("name", JobValue::of(b.select));
-         return value;
-       }},
-      {"kind", Takes::text, "what kind of boundary it is", fmt::format("one of {}", fmt::join(kinds, ", ")),
-       [](BoundaryOptions& b, const JobValue& v) {
-         if (std::find(kinds.begin(), kinds.end(), as_text(v)) == kinds.end())
-           throw BadValue("got " + describe(v) + did_you_mean(v.text, kinds));
-         b.kind = v.text;
-       },
-       [](const BoundaryOptions& b) { return b.kind.empty() ? JobValue() : JobValue::of(b.kind); }}};
+       "a name, or { name = \"wing*\" }"},
+      [](BoundaryOptions& b, const JobValue& v) {
+        const JobValue* name = v.is(JobValue::Kind::table) && v.items.size() == 1 ? v.find("name") : nullptr;
+        if (v.is(JobValue::Kind::table) && !name)
+          throw BadValue("selecting by anything but name is" + planned_note("boundaries.*.select.id").substr(1));
+        b.select = as_text(name ? *name : v);
+      },
+      [](const BoundaryOptions& b) {
+        if (b.select.empty()) return JobValue();
+        JobValue value = JobValue::table();
+        value.add("name", JobValue::of(b.select));
+        return value;
+      });
+  add_entry<BoundaryOptions>(
+      table, boundaries,
+      {"kind", Takes::text, "what kind of boundary it is", fmt::format("one of {}", fmt::join(kinds, ", "))},
+      [](BoundaryOptions& b, const JobValue& v) { b.kind = as_choice(v, kinds); },
+      [](const BoundaryOptions& b) { return text_value(b.kind); });
   return table;
+}
+
+const std::vector<EntryTable>& entry_tables() {
+  static const std::vector<EntryTable> tables = [] {
+    std::vector<EntryTable> all = size_entry_tables();
+    all.push_back(boundary_table());
+    return all;
+  }();
+  return tables;
 }
 
 /// "sphere:20c", "circle:20c", "box:10c", "box:xmin,ymin,zmin,xmax,ymax,zmax", "none".

@@ -42,15 +42,29 @@ struct OptionRow {
 /// @brief All options, in the order in which they are printed: keys of one table stand together.
 const std::vector<OptionRow>& option_table();
 
-/// @brief Options of one boundary, keys "select" and "kind"; `get` and `set` act on that one.
-struct BoundaryRow {
+/// @brief One key of a table that repeats or that the user names; `set` and `get` act on one entry.
+struct EntryRow {
   std::string name;
   Takes takes = Takes::text;
   std::string help, allowed;
-  std::function<void(BoundaryOptions&, const JobValue&)> set;
-  std::function<JobValue(const BoundaryOptions&)> get;
+  std::function<void(Options&, std::size_t entry, const JobValue&)> set;
+  std::function<JobValue(const Options&, std::size_t entry)> get;
 };
-const std::vector<BoundaryRow>& boundary_table();
+
+/// @brief Tables of any number: [boundaries.NAME], or [[size.source]] as a list.
+struct EntryTable {
+  std::string key;
+  bool is_list = false;
+  std::vector<EntryRow> rows;
+  std::function<std::size_t(const Options&)> count;
+  std::function<void(Options&)> clear;
+  /// The entry of that name, made where there is none; of a list: a new one.
+  std::function<std::size_t(Options&, const std::string& name)> entry_of;
+  std::function<std::string(const Options&, std::size_t entry)> name_of;
+  /// Where a key of an entry was set, for entries that keep that by themselves; may be empty.
+  std::function<void(Options&, std::size_t entry, const std::string& name, const std::string& place)> note;
+};
+const std::vector<EntryTable>& entry_tables();
 
 /// @brief A flag that stands for one or more keys: --farfield sphere:20c, --no-improve.
 struct Shorthand {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "base/nearest_name.hpp"
@@ -35,7 +36,11 @@ std::vector<std::string> names_in(const std::string& path) {
       const std::string rest = row.key.substr(prefix.size());
       add(rest.substr(0, rest.find('.')));
     }
-  if (path.empty()) add("boundaries");
+  for (const EntryTable& table : entry_tables())
+    if (table.key.starts_with(prefix)) {
+      const std::string rest = table.key.substr(prefix.size());
+      add(rest.substr(0, rest.find('.')));
+    }
   return names;
 }
 
@@ -86,58 +91,92 @@ void note_place(Options& options, const std::string& key, const JobValue& value,
     options.set_at[fmt::format("{}[{}]", key, i)] = place_of(where(value.items[i].line));
 }
 
-BoundaryOptions& boundary_of(Options& options, const std::string& name) {
-  for (BoundaryOptions& boundary : options.boundaries)
-    if (boundary.name == name) return boundary;
-  options.boundaries.push_back({.name = name, .select = "", .kind = ""});
-  return options.boundaries.back();
+const EntryTable* find_entry_table(const std::string& path) {
+  for (const EntryTable& table : entry_tables())
+    if (path == table.key || path.starts_with(table.key + ".")) return &table;
+  return nullptr;
 }
 
-void apply_boundary_entry(Options& options, const std::string& name, const std::string& entry, const JobValue& value,
-                          const Where& where) {
-  const std::string key = fmt::format("boundaries.{}.{}", toml_key(name), entry);
+std::vector<std::string> names_in(const EntryTable& table) {
   std::vector<std::string> names;
-  for (const BoundaryRow& row : boundary_table()) {
-    names.push_back(row.name);
-    if (row.name != entry) continue;
-    set_checked(key, row.allowed, where(value.line), [&] { row.set(boundary_of(options, name), value); });
-    BoundaryOptions& boundary = boundary_of(options, name);
-    if (entry == "select" || boundary.set_at.empty()) boundary.set_at = place_of(where(value.line));
+  for (const EntryRow& row : table.rows) names.push_back(row.name);
+  return names;
+}
+
+/// "size.source[2]", "boundaries.wing"
+std::string key_of_entry(const EntryTable& table, const Options& options, std::size_t entry) {
+  return table.is_list ? fmt::format("{}[{}]", table.key, entry)
+                       : fmt::format("{}.{}", table.key, toml_key(table.name_of(options, entry)));
+}
+
+void apply_to_entry(const EntryTable& table, Options& options, std::size_t entry, const std::string& name,
+                    const JobValue& value, const Where& where) {
+  const std::string of_entry = key_of_entry(table, options, entry), key = of_entry + "." + name;
+  for (const EntryRow& row : table.rows) {
+    if (row.name != name) continue;
+    set_checked(key, row.allowed, where(value.line), [&] { row.set(options, entry, value); });
+    note_place(options, key, value, where);
+    if (table.note) table.note(options, entry, name, place_of(where(value.line)));
+    options.set_at.try_emplace(of_entry, place_of(where(value.line)));
     return;
   }
-  throw UsageError(fmt::format("{}unknown key '{}'{}; allowed in [boundaries.{}]: {}", where(value.line), key,
-                               did_you_mean(entry, names), toml_key(name), fmt::join(names, ", ")));
+  throw UsageError(fmt::format("{}unknown key '{}'{}; allowed in [{}]: {}", where(value.line), key,
+                               did_you_mean(name, names_in(table)), of_entry, fmt::join(names_in(table), ", ")));
 }
 
-void need_table(const std::string& path, const JobValue& value, const Where& where) {
+void need_table(const std::string& path, const JobValue& value, const std::vector<std::string>& names,
+                const Where& where) {
   if (value.is(JobValue::Kind::table)) return;
-  const std::vector<std::string> names =
-      path.starts_with("boundaries") ? std::vector<std::string>{"select", "kind"} : names_in(path);
   throw UsageError(fmt::format("{}{}: expected a table with {}; got {}", where(value.line), path,
                                fmt::join(names, ", "), describe(value)));
 }
 
+void apply_entry(const EntryTable& table, Options& options, const std::string& name, const JobValue& value,
+                 const Where& where) {
+  need_table(table.is_list ? table.key : table.key + "." + name, value, names_in(table), where);
+  const std::size_t entry = table.entry_of(options, name);
+  options.set_at.try_emplace(key_of_entry(table, options, entry), place_of(where(value.line)));
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    apply_to_entry(table, options, entry, value.names[i], value.items[i], where);
+}
+
+/// A list of tables, which replaces what was there; one table is a list of one.
+void apply_list(const EntryTable& table, Options& options, const std::string& path, const JobValue& value,
+                const Where& where) {
+  const bool is_list = value.is(JobValue::Kind::list);
+  if (path != table.key || (!is_list && !value.is(JobValue::Kind::table)))
+    throw UsageError(fmt::format("{}{}: expected a list of tables with {}, [[{}]] in a job file; got {}",
+                                 where(value.line), path, fmt::join(names_in(table), ", "), table.key,
+                                 describe(value)));
+  table.clear(options);
+  if (!is_list) return apply_entry(table, options, "", value, where);
+  for (const JobValue& item : value.items) apply_entry(table, options, "", item, where);
+}
+
 /// path: "boundaries", "boundaries.NAME" or "boundaries.NAME.entry"; a name may hold dots where the tree is a table.
-void apply_boundaries_value(Options& options, const std::string& path, const JobValue& value, const Where& where) {
-  const std::string rest = path.size() > 11 ? path.substr(11) : "";
+void apply_named(const EntryTable& table, Options& options, const std::string& path, const JobValue& value,
+                 const Where& where) {
+  const std::string rest = path == table.key ? "" : path.substr(table.key.size() + 1);
   const std::size_t dot = rest.find_last_of('.');
-  if (dot != std::string::npos && !value.is(JobValue::Kind::table))
-    return apply_boundary_entry(options, rest.substr(0, dot), rest.substr(dot + 1), value, where);
-  if (dot != std::string::npos && rest.substr(dot + 1) == "select")
-    return apply_boundary_entry(options, rest.substr(0, dot), "select", value, where);
-  need_table(path, value, where);
-  if (!rest.empty()) {
-    boundary_of(options, rest);
-    for (std::size_t i = 0; i < value.items.size(); ++i)
-      apply_boundary_entry(options, rest, value.names[i], value.items[i], where);
-    return;
-  }
-  for (std::size_t i = 0; i < value.items.size(); ++i) {
-    need_table("boundaries." + value.names[i], value.items[i], where);
-    boundary_of(options, value.names[i]);
-    for (std::size_t k = 0; k < value.items[i].items.size(); ++k)
-      apply_boundary_entry(options, value.names[i], value.items[i].names[k], value.items[i].items[k], where);
-  }
+  const std::vector<std::string> names = names_in(table);
+  const bool is_entry =
+      dot != std::string::npos &&
+      (!value.is(JobValue::Kind::table) || std::find(names.begin(), names.end(), rest.substr(dot + 1)) != names.end());
+  if (is_entry)
+    return apply_to_entry(table, options, table.entry_of(options, rest.substr(0, dot)), rest.substr(dot + 1), value,
+                          where);
+  if (!rest.empty()) return apply_entry(table, options, rest, value, where);
+  need_table(path, value, names, where);
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    apply_entry(table, options, value.names[i], value.items[i], where);
+}
+
+/// A table that may be given by its main entry alone: gap = 3 for gap = { cells = 3 }.
+std::string main_entry(const std::string& path) {
+  static const std::map<std::string, std::string> entries = {
+      {"size.expression", "delta"}, {"size.gap", "cells"}, {"size.proximity", "cells"}, {"size.background", "file"}};
+  const auto it = entries.find(path);
+  return it == entries.end() ? "" : it->second;
 }
 
 /// Put a value into a tree at "a.b.c", making the tables on the way.
@@ -154,14 +193,16 @@ void insert(JobValue& tree, const std::string& path, JobValue value) {
 }  // namespace
 
 void apply_value(Options& options, const std::string& path, const JobValue& value, const Where& where) {
-  if (path == "boundaries" || path.starts_with("boundaries."))
-    return apply_boundaries_value(options, path, value, where);
+  if (const EntryTable* table = find_entry_table(path))
+    return (table->is_list ? apply_list : apply_named)(*table, options, path, value, where);
   if (const OptionRow* row = find_row(path)) {
     set_checked(path, row->allowed, where(value.line), [&] { row->set(options, value); });
     return note_place(options, path, value, where);
   }
   if (!path.empty() && names_in(path).empty()) fail_unknown(path, where(value.line));
-  need_table(path, value, where);
+  if (const std::string entry = main_entry(path); !entry.empty() && !value.is(JobValue::Kind::table))
+    return apply_value(options, full_key(path, entry), value, where);
+  need_table(path, value, names_in(path), where);
   for (std::size_t i = 0; i < value.items.size(); ++i)
     apply_value(options, full_key(path, value.names[i]), value.items[i], where);
 }
@@ -179,9 +220,20 @@ UsageError usage_error(const Options& options, const std::string& key, const std
 
 void set_option(Options& options, const std::string& key, const std::string& value) {
   Takes takes = Takes::number;  // of what is no single option: tables, lists
-  if (const OptionRow* row = find_row(key)) takes = row->takes;
-  if (key.starts_with("boundaries.")) takes = Takes::text;
+  const std::string entry = main_entry(key);
+  if (const OptionRow* row = find_row(entry.empty() ? key : full_key(key, entry))) takes = row->takes;
+  if (find_entry_table(key)) takes = Takes::text;
   apply_value(options, key, value_from_text(takes, value), [](int) { return std::string(); });
+}
+
+/// What is set of one entry.
+static JobValue entry_tree(const EntryTable& table, const Options& options, std::size_t entry) {
+  JobValue tree = JobValue::table();
+  for (const EntryRow& row : table.rows) {
+    JobValue value = row.get(options, entry);
+    if (!value.is(JobValue::Kind::none)) tree.add(row.name, std::move(value));
+  }
+  return tree;
 }
 
 JobValue option_tree(const Options& options) {
@@ -190,17 +242,16 @@ JobValue option_tree(const Options& options) {
     JobValue value = row.get(options);
     if (!value.is(JobValue::Kind::none)) insert(tree, row.key, std::move(value));
   }
-  if (options.boundaries.empty()) return tree;
-  JobValue boundaries = JobValue::table();
-  for (const BoundaryOptions& boundary : options.boundaries) {
-    JobValue entry = JobValue::table();
-    for (const BoundaryRow& row : boundary_table()) {
-      JobValue value = row.get(boundary);
-      if (!value.is(JobValue::Kind::none)) entry.add(row.name, std::move(value));
+  for (const EntryTable& table : entry_tables()) {
+    const std::size_t count = table.count(options);
+    if (count == 0) continue;
+    JobValue all = table.is_list ? JobValue::list() : JobValue::table();
+    for (std::size_t i = 0; i < count; ++i) {
+      JobValue entry = entry_tree(table, options, i);
+      table.is_list ? all.items.push_back(std::move(entry)) : all.add(table.name_of(options, i), std::move(entry));
     }
-    boundaries.add(boundary.name, std::move(entry));
+    insert(tree, table.key, std::move(all));
   }
-  tree.add("boundaries", std::move(boundaries));
   return tree;
 }
 
@@ -219,13 +270,14 @@ std::string print_config(const Options& options) {
     result += value.is(JobValue::Kind::none) ? fmt::format("# {} =  # {}\n", name, row.help)
                                              : fmt::format("{} = {}  # {}\n", name, to_toml(value), row.help);
   }
-  for (const BoundaryOptions& boundary : options.boundaries) {
-    result += fmt::format("\n[boundaries.{}]\n", toml_key(boundary.name));
-    for (const BoundaryRow& row : boundary_table()) {
-      const JobValue value = row.get(boundary);
-      if (!value.is(JobValue::Kind::none)) result += fmt::format("{} = {}\n", row.name, to_toml(value));
+  for (const EntryTable& of_entries : entry_tables())
+    for (std::size_t i = 0; i < of_entries.count(options); ++i) {
+      result += of_entries.is_list ? fmt::format("\n[[{}]]\n", of_entries.key)
+                                   : fmt::format("\n[{}]\n", key_of_entry(of_entries, options, i));
+      const JobValue entry = entry_tree(of_entries, options, i);
+      for (std::size_t k = 0; k < entry.items.size(); ++k)
+        result += fmt::format("{} = {}\n", entry.names[k], to_toml(entry.items[k]));
     }
-  }
   return result;
 }
 
@@ -237,31 +289,10 @@ std::string did_you_mean(const std::string& typed, const std::vector<std::string
 std::string planned_note(const std::string& key_or_flag) {
   // Words of the documented interface whose parts are not built yet: said plainly instead of "unknown".
   static const std::set<std::string> planned = {
-      "input.heal",
-      "domain.keep.seeds",
-      "boundaries.*.select.id",
-      "size.curvature",
-      "size.angle",
-      "size.deviation",
-      "size.gap",
-      "size.expression",
-      "size.background",
-      "size.source",
-      "size.box",
-      "size.on",
-      "layers",
-      "surface",
-      "volume.elements",
-      "--heal",
-      "--curvature",
-      "--gap",
-      "--hausd",
-      "--layers",
-      "estimate",
-      "refine",
-      "adapt",
-      "partition",
-      "view",
+      "input.heal", "domain.keep.seeds", "boundaries.*.select.id",
+      "layers",     "surface",           "volume.elements",
+      "--heal",     "--layers",          "refine",
+      "adapt",      "partition",         "view",
   };
   for (const std::string& known : planned)
     if (key_or_flag == known || key_or_flag.starts_with(known + ".")) return ": not in this version of delfront";

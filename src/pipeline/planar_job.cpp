@@ -75,12 +75,13 @@ void check_planar_outputs(const Options& options) {
   }
 }
 
-Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context) {
-  if (!far_field.is_valid()) return generate_planar(domain, options, context);
+Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options,
+                              const std::shared_ptr<const SizeField>& sizes, Context& context) {
+  if (!far_field.is_valid()) return generate_planar(domain, options, context, sizes);
   PlanarDomain known = domain;
   const PlanarCurve asked = known.curves[far_field];
   known.curves[far_field].kind = "farfield";
-  Outcome outcome = generate_planar(known, options, context);
+  Outcome outcome = generate_planar(known, options, context, sizes);
   const GroupId group = outcome.mesh.find_group(1, asked.name);
   if (group.is_valid()) outcome.mesh.groups[group].kind = asked.kind;
   return outcome;

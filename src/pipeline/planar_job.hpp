@@ -17,7 +17,8 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
 void check_planar_outputs(const Options& options);
 
 /// @brief generate_planar, knowing the far field by its kind whatever kind the job gives it in the grid.
-Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options, Context& context);
+Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options,
+                              const std::shared_ptr<const SizeField>& sizes, Context& context);
 
 /// @brief The domain's lines as a mesh, to look at or to write.
 Mesh line_mesh(const PlanarDomain& domain);

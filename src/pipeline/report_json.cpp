@@ -49,6 +49,17 @@ Json to_json(const JobValue& value) {
   return nullptr;
 }
 
+Json to_json(const Estimate& e) {
+  return {{"cells", number(e.cells)},
+          {"points", number(e.points)},
+          {"measure", number(e.measure)},
+          {"least_size", number(e.least_size)},
+          {"greatest_size", number(e.greatest_size)},
+          {"memory_bytes", number(e.memory)},
+          {"seconds", number(e.seconds)},
+          {"is_at_least", e.is_at_least}};
+}
+
 Json to_json(const Measure& m) {
   Json worst = Json::array();
   for (std::size_t i = 0; i < m.worst.size(); ++i) {
@@ -273,6 +284,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"regions", groups_json(result.mesh, 3)},
       {"curves", result.mesh.dimension == 3 ? groups_json(result.mesh, 1) : Json::array()},
       {"points", groups_json(result.mesh, 0)},
+      {"estimate", result.estimate ? to_json(*result.estimate) : Json(nullptr)},
       {"failed_gates", result.failed_gates},
       {"files_written", result.files_written},
       {"defects_file", result.defects_file},

@@ -18,6 +18,7 @@ struct Run {
   PatchId far_field;                   ///< the patch of domain.enclose, where there is one
   std::vector<Finding> gate_failures;  ///< of a grid that does not meet output.require
   Mesh partial;                        ///< what there is of the grid where gridding failed
+  JobKind kind = JobKind::grid;
 };
 
 inline bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }

@@ -16,11 +16,13 @@
 #include "pipeline/boundaries.hpp"
 #include "pipeline/job_checks.hpp"
 #include "pipeline/job_leavings.hpp"
+#include "pipeline/job_sizes.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/planar_job.hpp"
 #include "pipeline/quantities.hpp"
 #include "pipeline/report_json.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/size_survey.hpp"
 
 namespace delfront {
 
@@ -148,10 +150,11 @@ void stop_at_surface(Run& run, Model model) {
 
 /// generate() knows the outer boundary by its kind, "farfield"; a kind that the job gives it goes to the grid alone.
 Outcome generate_in_far_field(const Run& run, Model model) {
-  if (!run.far_field.is_valid()) return generate(std::move(model), run.options, run.context);
+  std::shared_ptr<const SizeField> sizes = build_job_size_field(run.options, model, model.bounding_box(), run.context);
+  if (!run.far_field.is_valid()) return generate(std::move(model), run.options, run.context, std::move(sizes));
   const Patch asked = model.patches[run.far_field];
   model.patches[run.far_field].kind = "farfield";
-  Outcome outcome = generate(std::move(model), run.options, run.context);
+  Outcome outcome = generate(std::move(model), run.options, run.context, std::move(sizes));
   const GroupId group = outcome.mesh.find_group(2, asked.name);
   if (group.is_valid()) outcome.mesh.groups[group].kind = asked.kind;
   return outcome;
@@ -180,6 +183,42 @@ void finish(Run& run, Outcome outcome) {
                                  fmt::join(run.result.failed_gates, "; "));
 }
 
+/// Goes as far as a grid would, and writes sizes or nothing.
+void prepare_survey(Run& run) {
+  run.options.stop_after = run.kind == JobKind::estimate ? "improve" : "";
+  run.options.volume.method = VolumeOptions().method;
+}
+
+void check_size_outputs(const Options& options) {
+  for (std::size_t i = 0; i < options.output.files.size(); ++i)
+    if (const std::string& path = options.output.files[i]; format_of(path, options.output.format, true).name != "vtu")
+      throw usage_error(options, fmt::format("output.files[{}]", i),
+                        fmt::format("{}: sizes are written as VTU; say e.g. -o sizes.vtu", path));
+}
+
+/// Estimate and sizes: what the boundary and the size field say, without a grid.
+void survey(Run& run, const KeptDomain& domain, const SizeField& size) {
+  if (run.kind == JobKind::estimate) {
+    run.result.estimate = estimate_grid(domain, size, run.context);
+  } else {
+    run.result.mesh = size_mesh(domain, size, run.context);
+    write_outputs(run);
+  }
+}
+
+void survey_volume(Run& run, Model model) {
+  if (run.far_field.is_valid()) model.patches[run.far_field].kind = "farfield";
+  std::shared_ptr<const SizeField> asked = build_job_size_field(run.options, model, model.bounding_box(), run.context);
+  const Prepared prepared = prepare_volume(model, run.options, std::move(asked), run.result.report, run.context);
+  survey(run, KeptDomain(prepared), *prepared.size);
+}
+
+void survey_plane(Run& run, PlanarDomain domain, CurveId far_field, const std::shared_ptr<const SizeField>& asked) {
+  if (far_field.is_valid()) domain.curves[far_field].kind = "farfield";
+  const PlanarPrepared prepared = prepare_planar(domain, run.options, asked, run.context);
+  survey(run, KeptDomain(prepared), *prepared.size);
+}
+
 /// Lines in the plane: the same steps, over curves instead of patches.
 void work_in_the_plane(Run& run) {
   check_planar_outputs(run.options);
@@ -198,12 +237,17 @@ void work_in_the_plane(Run& run) {
     return;
   }
   if (run.options.stop_after == "volume") run.options.improve.enabled = false;
-  Outcome outcome = generate_in_far_field(domain, far_field, run.options, run.context);
+  const Model names = model_of(domain);
+  const std::shared_ptr<const SizeField> sizes =
+      build_job_size_field(run.options, names, names.bounding_box(), run.context);
+  if (run.kind != JobKind::grid) return survey_plane(run, std::move(domain), far_field, sizes);
+  Outcome outcome = generate_in_far_field(domain, far_field, run.options, sizes, run.context);
   finish(run, std::move(outcome));
 }
 
 void work(Run& run) {
   check_floating_point_mode();
+  if (run.kind == JobKind::sizes) check_size_outputs(run.options);
   check_job(run.options);
   read_inputs(run);
   if (is_planar_job(run.inputs)) return work_in_the_plane(run);
@@ -211,6 +255,7 @@ void work(Run& run) {
   if (run.options.stop_after == "geometry") return stop_at_surface(run, std::move(model));
   if (run.options.stop_after == "surface" || run.options.volume.method == "none")
     return stop_at_surface(run, std::move(model));
+  if (run.kind != JobKind::grid) return survey_volume(run, std::move(model));
   if (run.options.stop_after == "volume") run.options.improve.enabled = false;
   finish(run, generate_in_far_field(run, std::move(model)));
 }
@@ -272,7 +317,7 @@ void set_limits(const LimitOptions& limits, Context& context) {
 
 }  // namespace
 
-JobResult run_job(const Options& options, Context& context, const std::string& command) {
+JobResult run_job(const Options& options, Context& context, const std::string& command, JobKind kind) {
   JobResult result;
   set_limits(options.limits, context);
   const auto outer_log = context.on_log;
@@ -285,7 +330,8 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
     result.stage = progress.stage;
     if (outer_progress) outer_progress(progress);
   };
-  Run run{options, context, result, {}, {}, {}, {}};
+  Run run{options, context, result, {}, {}, {}, {}, kind};
+  if (kind != JobKind::grid) prepare_survey(run);
   work_and_catch(run);
   context.on_log = outer_log;
   context.on_progress = outer_progress;

@@ -7,6 +7,7 @@
 
 #include "planar/improve.hpp"
 #include "planar/kernel.hpp"
+#include "planar/prepare.hpp"
 #include "planar/refine.hpp"
 #include "planar/split.hpp"
 #include "planar/to_mesh.hpp"
@@ -94,26 +95,12 @@ BoundarySizes measure_boundary(const PlanarGrid& grid) {
   return sizes;
 }
 
-/// The lesser of two fields; of one alone where there is no other.
-class LesserField : public SizeField {
- public:
-  LesserField(const std::unique_ptr<SizeField>& one, const SizeField* two) : one_(one), two_(two) {}
-  void sizes(std::span<const Point> at, std::span<double> size) const override {
-    one_->sizes(at, size);
-    if (!two_) return;
-    std::vector<double> other(at.size());
-    two_->sizes(at, other);
-    for (std::size_t i = 0; i < at.size(); ++i) size[i] = std::min(size[i], other[i]);
-  }
-  double lower_bound(const Box& box) const override {
-    const double low = one_->lower_bound(box);
-    return two_ ? std::min(low, two_->lower_bound(box)) : low;
-  }
-
- private:
-  const std::unique_ptr<SizeField>& one_;  ///< may be built anew
-  const SizeField* two_;
-};
+std::shared_ptr<const SizeField> build_size_field(const PlanarGrid& grid, const SizeOptions& options, double largest,
+                                                  const std::shared_ptr<const SizeField>& asked, Context& context) {
+  std::shared_ptr<const SizeField> of_boundary =
+      build_asked_size_field(measure_boundary(grid), options, largest, context);
+  return asked ? combine_with_asked(std::move(of_boundary), asked, options) : of_boundary;
+}
 
 /// The field's size at every vertex, so that all sizes keep the growth.
 void set_vertex_sizes(TriComplex& complex, const SizeField& field) {
@@ -142,23 +129,29 @@ std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& co
   return findings;
 }
 
-Outcome generate_planar(const PlanarDomain& domain, const Options& options, Context& context, const SizeField* size) {
-  check_floating_point_mode();
+PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options,
+                              const std::shared_ptr<const SizeField>& asked, Context& context) {
   check_domain(domain);
+  PlanarPrepared prepared;
+  PlanarGrid& grid = prepared.grid;
+  grid = triangulate(domain, options.domain, context);
+  const double largest = largest_size(measure_boundary(grid));
+  prepared.size = build_size_field(grid, options.size, largest, asked, context);
+  if (options.planar.boundary == "split") {
+    split_segments(grid, *prepared.size, context);
+    prepared.size = build_size_field(grid, options.size, largest, asked, context);
+  }
+  set_vertex_sizes(grid.complex, *prepared.size);
+  return prepared;
+}
+
+Outcome generate_planar(const PlanarDomain& domain, const Options& options, Context& context,
+                        std::shared_ptr<const SizeField> asked) {
+  check_floating_point_mode();
   Outcome outcome;
   Report& report = outcome.report;
-  PlanarGrid grid = triangulate(domain, options.domain, context);
-  BoundarySizes sizes = measure_boundary(grid);
-  const double largest = largest_size(sizes);
-  auto by_boundary = build_asked_size_field(std::move(sizes), options.size, largest, context);
-  const LesserField both(by_boundary, size);
-  if (options.planar.boundary == "split") {
-    split_segments(grid, both, context);
-    by_boundary = build_asked_size_field(measure_boundary(grid), options.size, largest, context);
-  }
-  const SizeField& field = size ? static_cast<const SizeField&>(both) : *by_boundary;
-  set_vertex_sizes(grid.complex, field);
-  report.refine = refine_complex(grid, field, context);
+  auto [grid, size] = prepare_planar(domain, options, asked, context);
+  report.refine = refine_complex(grid, *size, context);
   if (options.improve.enabled)
     report.improve = improve_complex(grid,
                                      {.min_angle = options.planar.min_angle,

@@ -71,8 +71,8 @@ SourceSizeField::SourceSizeField(const std::vector<SizeSource>& sources, const S
     term.factor = greatest_factor(turned);
     greatest.push_back(std::move(term));
   }
-  is_scanned_ = options.search == SourceSearch::scan ||
-                (options.search == SourceSearch::automatic && plain.size() < kScanBelow);
+  is_scanned_ =
+      options.search == SourceSearch::scan || (options.search == SourceSearch::automatic && plain.size() < kScanBelow);
   plain_ = SourceTree(std::move(plain), context);
   least_ = SourceTree(std::move(least), context);
   greatest_ = SourceTree(std::move(greatest), context);
@@ -117,8 +117,8 @@ void SourceSizeField::metrics(std::span<const Point> at, std::span<Metric> metri
     metric[i] = is_isotropic() ? isotropic_metric(plain_size(at[i], hints)) : metric_at(at[i], hints);
 }
 
-/// An intersection by simultaneous reduction is (as a quadratic form) at most the sum of its parts, so that its greatest
-/// eigenvalue is at most the sum of theirs.
+/// An intersection by simultaneous reduction is (as a quadratic form) at most the sum of its parts, so that its
+/// greatest eigenvalue is at most the sum of theirs.
 double SourceSizeField::stretched_lower_bound(const Box& box) const {
   double sum = plain_.empty() ? 0 : std::pow(plain_.lower_bound(box), -2);
   for (const std::uint32_t i : least_.below(box, kInfinity)) {
@@ -139,12 +139,13 @@ void check_motion(const Motion& motion) {
       !std::isfinite(motion.degrees_rate))
     throw UsageError("motion: velocity, centre, axis and rate must be numbers");
   if (motion.degrees_rate != 0 && motion.axis == Point{})
-    throw UsageError(fmt::format("motion: rate = {} but the axis is [0, 0, 0]; give the axis to turn about",
-                                 motion.degrees_rate));
+    throw UsageError(
+        fmt::format("motion: rate = {} but the axis is [0, 0, 0]; give the axis to turn about", motion.degrees_rate));
 }
 
 void check_sources(const std::vector<SizeSource>& sources, const SourceFieldOptions& options) {
-  if (sources.empty()) throw UsageError("size sources: there is none; give at least one [[size.source]] or [[size.box]]");
+  if (sources.empty())
+    throw UsageError("size sources: there is none; give at least one [[size.source]] or [[size.box]]");
   if (!(options.growth > 1))
     throw UsageError(fmt::format("growth is {}; it must be a number greater than 1, e.g. 1.2", options.growth));
   if (!std::isfinite(options.time)) throw UsageError(fmt::format("size.time = {}: it must be a number", options.time));

@@ -2,8 +2,8 @@
 // Branch and bound over sources.
 //
 // A law turned around says how far a source reaches: within which distance it can give less than a size. So each child
-// of a node keeps, for 32 sizes, the largest reach of the sources in it; a search looks up once which of the 32 sizes is
-// the next above the best value so far, and enters the children whose boxes are nearer than their reach for it. The
+// of a node keeps, for 32 sizes, the largest reach of the sources in it; a search looks up once which of the 32 sizes
+// is the next above the best value so far, and enters the children whose boxes are nearer than their reach for it. The
 // sizes are quantiles of those that the field has at places of a sample, so that they stand dense where they matter:
 // with flat laws a whole field may lie within a few per cent.
 //
@@ -116,7 +116,9 @@ int SourceTree::bin_of(double size) const {
 SourceTree::Query SourceTree::start(const Box& box, double best) const {
   Query query{{}, {}, best, bin_of(best)};
   for (int k = 0; k < 3; ++k) {
-    const auto place = [&](double x) { return std::clamp(static_cast<float>((x - centre_[k]) / extent_), -kFar, kFar); };
+    const auto place = [&](double x) {
+      return std::clamp(static_cast<float>((x - centre_[k]) / extent_), -kFar, kFar);
+    };
     query.low[k] = place(box.low[k]);
     query.high[k] = place(box.high[k]);
   }

@@ -35,8 +35,8 @@ class SourceTree {
   double least_by_scan(Point p) const;
   /// @brief A lower bound over a box, not above the least term at its centre.
   double lower_bound(const Box& box) const;
-  /// @brief Numbers (as given) of the terms below `size` somewhere in the box as far as lower bounds tell (at p: exactly
-  /// those), ascending.
+  /// @brief Numbers (as given) of the terms below `size` somewhere in the box as far as lower bounds tell (at p:
+  /// exactly those), ascending.
   std::vector<std::uint32_t> below(const Box& box, double size) const;
   double largest() const;
   double smallest() const;  ///< the least delta0
@@ -67,8 +67,8 @@ class SourceTree {
   void search(Query& query, const Visit& visit) const;
   std::vector<double> sample_sizes() const;
 
-  std::vector<SourceTerm> terms_;       // in the order of the leaves
-  std::vector<std::uint32_t> number_;   // as given
+  std::vector<SourceTerm> terms_;      // in the order of the leaves
+  std::vector<std::uint32_t> number_;  // as given
   std::vector<Node> nodes_;
   std::vector<Reach> reaches_;
   Point centre_;

@@ -31,7 +31,7 @@ class Slips(case.Case):
 
     def test_words_of_later_versions_are_said_to_be_so(self):
         self.expect(2, "adapt", "a.vtu", says="not in this version")
-        self.expect(2, "mesh", "a.stl", "--curvature", "18", says="not in this version")
+        self.expect(2, "mesh", "a.stl", "--layers", "18", says="not in this version")
 
     def test_wrong_values_say_what_is_allowed(self):
         self.write("a.stl", case.stl_ascii(case.box_triangles()))

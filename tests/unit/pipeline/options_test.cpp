@@ -140,8 +140,7 @@ TEST(JobFile, unknown_key_names_line_and_nearest) {
 }
 
 TEST(JobFile, keys_of_later_versions_are_said_to_be_so) {
-  for (const char* text : {"[size]\ncurvature = 18\n", "[[layers]]\non = ['wing']\n", "[size]\ngap = { cells = 3 }\n",
-                           "[input]\nheal = { sew = true }\n", "[[size.source]]\ntype = 'line'\n",
+  for (const char* text : {"[[layers]]\non = ['wing']\n", "[input]\nheal = { sew = true }\n",
                            "[domain]\nkeep = { seeds = { a = [0,0,0] } }\n"})
     EXPECT_SAYS(refusal("case.toml", text), "not in this version") << text;
 }
@@ -183,6 +182,17 @@ TEST(SetOption, takes_words_of_the_command_line) {
   set_option(o, "limits.max_cells", "5e6");
   EXPECT_EQ(o.limits.max_cells, 5000000u);
   set_option(o, "boundaries.wing.kind", "wall");
+  set_option(o, "size.on.'le*'.h", "0.5%");
+  set_option(
+      o, "size.source",
+      "[{ type = 'point', at = [[1, 2, 3]], delta0 = '1%', r0 = 0, r1 = '2 mm', law = 'exponential', group = 'a' "
+      "}, { type = 'surface', file = '/w.stl', delta0 = 2, law = { type = 'polynomial', coefficients = [0, 1e-20] "
+      "}, stretch = { s1 = 10, first = [0, 0, 1] }, motion = { velocity = [1, 0, 0], axis = [0, 0, 1], rate = 90 "
+      "} }]");
+  set_option(
+      o, "size.box",
+      "[{ min = [0, 0, 0], max = [1, 1, 2], h = '5%' }, { shape = 'cone', from = [0, 0, 0], to = [0, 0, 1], radius "
+      "= 1, radius_to = 0.25, centre = [0, 0, 9], file = '/x.stl', h = 1 }]");
   set_option(o, "boundaries.wing.select", "OML*");
   ASSERT_EQ(o.boundaries.size(), 1u);
   EXPECT_EQ(o.boundaries[0].select, "OML*");
@@ -233,6 +243,31 @@ Options unusual_options() {
       {"size.hmin", "1e-7"},
       {"size.hmax", "12.5%"},
       {"size.growth", "1.1"},
+      {"size.without", "[\"wake*\"]"},
+      {"size.time", "0.5"},
+      {"size.curvature", "18"},
+      {"size.angle", "12"},
+      {"size.deviation", "0.01%"},
+      {"size.gap", "3"},
+      {"size.gap.hmin", "1e-4"},
+      {"size.proximity.cells", "2.5"},
+      {"size.proximity.hmin", "1e-5"},
+      {"size.expression", "0.01 + 0.1*abs(z)"},
+      {"size.expression.s1", "10"},
+      {"size.expression.s2", "2 + x"},
+      {"size.expression.first", "[\"1\", \"0\", \"0\"]"},
+      {"size.expression.second", "[\"0\", \"1\", \"0\"]"},
+      {"size.background", "/bg.vtu"},
+      {"size.background.size", "spacing"},
+      {"size.background.metric", "M"},
+      {"size.background.combine", "alone"},
+      {"size.background.factor", "0.5"},
+      {"size.solution.file", "/flow.vtu"},
+      {"size.solution.sensor", "Mach"},
+      {"size.solution.indicator", "error"},
+      {"size.solution.norm", "4"},
+      {"size.solution.complexity", "2e5"},
+      {"size.solution.hgrad", "1.3"},
       {"planar.boundary", "split"},
       {"planar.min_angle", "25"},
       {"volume.method", "none"},
@@ -257,6 +292,17 @@ Options unusual_options() {
   for (const auto& [key, value] : settings) set_option(o, key, value);
   set_option(o, "boundaries.wing.select", "O?L*");
   set_option(o, "boundaries.wing.kind", "wall");
+  set_option(o, "size.on.'le*'.h", "0.5%");
+  set_option(
+      o, "size.source",
+      "[{ type = 'point', at = [[1, 2, 3]], delta0 = '1%', r0 = 0, r1 = '2 mm', law = 'exponential', group = 'a' "
+      "}, { type = 'surface', file = '/w.stl', delta0 = 2, law = { type = 'polynomial', coefficients = [0, 1e-20] "
+      "}, stretch = { s1 = 10, first = [0, 0, 1] }, motion = { velocity = [1, 0, 0], axis = [0, 0, 1], rate = 90 "
+      "} }]");
+  set_option(
+      o, "size.box",
+      "[{ min = [0, 0, 0], max = [1, 1, 2], h = '5%' }, { shape = 'cone', from = [0, 0, 0], to = [0, 0, 1], radius "
+      "= 1, radius_to = 0.25, centre = [0, 0, 9], file = '/x.stl', h = 1 }]");
   o.boundaries.push_back({"two words.", "", "inlet"});
   return o;
 }
@@ -265,6 +311,13 @@ TEST(PrintConfig, read_back_gives_the_same_options) {
   const Options unusual = unusual_options(), defaults;
   for (const OptionRow& row : option_table())
     EXPECT_NE(to_toml(row.get(unusual)), to_toml(row.get(defaults))) << row.key << " is not in the test";
+  for (const EntryTable& table : entry_tables())
+    for (const EntryRow& row : table.rows) {
+      std::size_t set = 0;
+      for (std::size_t i = 0; i < table.count(unusual); ++i)
+        set += row.get(unusual, i).is(JobValue::Kind::none) ? 0 : 1;
+      EXPECT_GT(set, 0u) << table.key << "." << row.name << " is not in the test";
+    }
   for (const Options& options : std::vector<Options>{defaults, unusual}) {
     const std::string text = print_config(options);
     const Options again = read("effective.toml", text);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace fixtures;
 
-Outcome generate(const PlanarDomain& domain, const Options& options, const SizeField* size = nullptr) {
+Outcome generate(const PlanarDomain& domain, const Options& options, std::shared_ptr<const SizeField> size = nullptr) {
   Context context;
   return generate_planar(domain, options, context, size);
 }
@@ -188,8 +188,8 @@ TEST(GeneratePlanar, T3_sizes_of_a_field_are_met) {
   add_loop(domain, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "outer");
   Options options;
   options.planar.boundary = "split";
-  const Graded field;
-  const Outcome outcome = generate(domain, options, &field);
+  const auto field = std::make_shared<Graded>();
+  const Outcome outcome = generate(domain, options, field);
   EXPECT_EQ(findings_of(outcome.mesh), "");
   EXPECT_NEAR(outcome.report.quality.volume, 1, 1e-12);
   EXPECT_GT(min_angle(outcome), 28);
@@ -198,7 +198,7 @@ TEST(GeneratePlanar, T3_sizes_of_a_field_are_met) {
   for (std::size_t t = 0; t < triangles->size(); ++t)
     for (unsigned k = 0; k < 3; ++k, ++all) {
       const Point a = outcome.mesh.points[(*triangles)[t][k]], b = outcome.mesh.points[(*triangles)[t][(k + 1) % 3]];
-      const double ratio = distance(a, b) / field.size(0.5 * (a + b));
+      const double ratio = distance(a, b) / field->size(0.5 * (a + b));
       good += ratio > 0.6 && ratio < 1.5;
     }
   EXPECT_GT(double(good), 0.99 * double(all));

@@ -31,8 +31,9 @@ enum class Kinds { simplices, all };
 
 SourceShape random_shape(Random& random, int kind, double size) {
   const Point a = random.point(1), b = a + random.point(size), c = a + random.point(size);
-  if (kind == 3) return AlignedBox{{{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                                    {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}}};
+  if (kind == 3)
+    return AlignedBox{{{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                       {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}}};
   if (kind == 4) return Ball{a, size * random.between(0, 1)};
   if (kind == 5) return Frustum{a, b, size * random.between(0, 1), size * random.between(0, 1)};
   return Simplex{{a, b, c}, kind + 1};
@@ -248,8 +249,8 @@ TEST(SourceSizeField, S4_sources_move_with_time) {
     if (std::abs(other - size) < 1e-11 * size) continue;
     bool is_at_step = false;
     for (const SizeSource& source : sources)
-      is_at_step |= source.law.kind == SizeLaw::Kind::step &&
-                    std::abs(distance_to(source.shape, p) - source.law.r0) < 1e-12;
+      is_at_step |=
+          source.law.kind == SizeLaw::Kind::step && std::abs(distance_to(source.shape, p) - source.law.r0) < 1e-12;
     EXPECT_TRUE(is_at_step) << "seed " << kSeed << " place " << i;
   }
 }
@@ -307,8 +308,7 @@ TEST(SourceSizeField, S4_metrics_respect_every_source_and_skip_only_what_cannot_
       EXPECT_NEAR(length_in(metric, e) / length_in(all, e), 1, 1e-6) << "seed " << kSeed << " place " << i;
       for (const SizeSource& source : sources) {
         if (!source.stretching) continue;
-        const Metric one =
-            stretched_metric(source.law.size_at(distance_to(source.shape, p)), *source.stretching);
+        const Metric one = stretched_metric(source.law.size_at(distance_to(source.shape, p)), *source.stretching);
         ASSERT_GE(length_in(metric, e), length_in(one, e) * (1 - 1e-7));
       }
     }

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every way of the job file to ask for sizes, put together as one field.
+#include "pipeline/job_sizes.hpp"
+
+#include <fmt/format.h>
+
+#include "delfront/background.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/io.hpp"
+#include "delfront/size_expression.hpp"
+#include "pipeline/option_table.hpp"
+#include "sizing/asked_sizes.hpp"
+
+namespace delfront {
+
+namespace {
+
+using FieldPointer = std::shared_ptr<const SizeField>;
+
+constexpr double kMuchOutside = 0.1;
+
+FieldPointer build_source_part(const Options& options, double growth, Context& context) {
+  std::vector<SizeSource> sources = job_sources(options, context);
+  if (sources.empty()) return nullptr;
+  return build_source_size_field(std::move(sources), {.growth = growth, .time = options.size.time}, context);
+}
+
+/// Texts of a formula have a place each; what is wrong with one is said with the place of the formula.
+FieldPointer build_expression_part(const Options& options, const Model& model, const Box& domain, double growth,
+                                   Context& context) {
+  const ExpressionOptions& asked = options.size.expression;
+  if (asked.delta.empty()) return nullptr;
+  const auto optional_text = [](const std::string& text) {
+    return text.empty() ? std::nullopt : std::optional<std::string>(text);
+  };
+  const auto optional_texts = [](const std::array<std::string, 3>& texts) {
+    return texts[0].empty() ? std::nullopt : std::optional<std::array<std::string, 3>>(texts);
+  };
+  try {
+    ExpressionSizes sizes;
+    sizes.delta = asked.delta;
+    sizes.s1 = optional_text(asked.s1);
+    sizes.s2 = optional_text(asked.s2);
+    sizes.first = optional_texts(asked.first);
+    sizes.second = optional_texts(asked.second);
+    sizes.domain = domain;
+    std::vector<std::string> texts = {asked.delta, asked.s1, asked.s2};
+    texts.insert(texts.end(), asked.first.begin(), asked.first.end());
+    texts.insert(texts.end(), asked.second.begin(), asked.second.end());
+    for (const std::string& text : texts)
+      if (!text.empty())
+        for (const std::string& name : distances_in(text))
+          sizes.names.distances[name] = build_distance_field(named_part(model, name));
+    return limit_growth(build_expression_size_field(sizes, context), domain, growth, context);
+  } catch (const UsageError& e) {
+    throw usage_error(options, "size.expression.delta", e.what());
+  } catch (const InputError& e) {  // the formula is at fault, not the input
+    throw usage_error(options, "size.expression.delta", e.what());
+  }
+}
+
+/// Most of the domain should lie in the grid: outside, sizes are those of its nearest border, which not everyone means.
+void warn_of_share_outside(const BackgroundField& field, const std::string& file, const Model& model,
+                           Context& context) {
+  const std::vector<Point> points(model.points.begin(), model.points.end());
+  const double share = field.share_outside(points);
+  if (share > kMuchOutside)
+    context.warn(
+        fmt::format("{:.0f} % of the boundary's points lie outside of {}: sizes there are those of its nearest "
+                    "border",
+                    100 * share, file));
+}
+
+FieldPointer build_background_part(const Options& options, const Model& model, const Box& domain, double growth,
+                                   Context& context) {
+  const BackgroundFileOptions& asked = options.size.background;
+  if (asked.file.empty()) return nullptr;
+  try {
+    BackgroundGrid grid;
+    grid.mesh = read_mesh(asked.file, context);
+    grid.name = asked.file;
+    grid.metric = asked.metric;
+    if (asked.metric.empty()) grid.size = asked.size;
+    std::shared_ptr<const BackgroundField> field =
+        build_background_size_field(grid, {.factor = asked.factor, .growth = growth}, context);
+    field->require_overlap(domain);
+    warn_of_share_outside(*field, asked.file, model, context);
+    return field;
+  } catch (const UsageError& e) {
+    throw usage_error(options, "size.background.file", e.what());
+  } catch (const InputError& e) {
+    throw InputError(place_of_key(options, "size.background.file") + e.what(), e.places);
+  }
+}
+
+}  // namespace
+
+FieldPointer build_job_size_field(const Options& options, const Model& model, const Box& domain, Context& context) {
+  const double growth = options.size.growth.value_or(kDefaultGrowth);
+  std::vector<FieldPointer> parts;
+  parts.push_back(build_background_part(options, model, domain, growth, context));
+  if (options.size.background.combine != "alone" || !parts[0]) {
+    parts.push_back(build_source_part(options, growth, context));
+    parts.push_back(build_expression_part(options, model, domain, growth, context));
+  }
+  std::erase(parts, nullptr);
+  if (parts.empty()) return nullptr;
+  return combine_size_fields(std::move(parts), 0, std::numeric_limits<double>::infinity());
+}
+
+Model model_of(const PlanarDomain& domain) {
+  Model model;
+  for (const Point2 p : domain.points) model.points.push_back({p.x, p.y, 0});
+  for (std::size_t i = 0; i < domain.segments.size(); ++i)
+    model.curves.push_back(
+        {domain.curves[domain.curve_of_segment[i]].name, {domain.segments[i][0], domain.segments[i][1]}});
+  return model;
+}
+
+}  // namespace delfront

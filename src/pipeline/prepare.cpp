@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/prepare.hpp"
+
+#include <fmt/format.h>
+
+#include "delfront/errors.hpp"
+#include "sizing/asked_sizes.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr double kMuchLonger = 1.5;  ///< edges of the surface than the largest size
+
+/// Turned and looked at; what cannot bound a volume goes no further.
+SurfaceReport prepare_surface(Model& model, Context& context) {
+  const std::size_t turned = orient_shells(model, context);
+  SurfaceReport report = check_surface(model, context);
+  report.reoriented = turned;
+  return report;
+}
+
+void refuse_invalid(const SurfaceReport& surface) {
+  if (surface.can_bound_volume && !has_errors(surface.findings)) return;
+  std::string message = "the surface cannot be gridded:";
+  std::vector<Place> places;
+  for (const Finding& f : surface.findings) {
+    if (f.severity != Severity::error) continue;
+    message += "\n  " + f.message + (f.remedy.empty() ? "" : "; " + f.remedy);
+    places.insert(places.end(), f.places.begin(), f.places.end());
+  }
+  throw InputError(message, std::move(places));
+}
+
+std::vector<bool> far_field_patches(const Model& model) {
+  std::vector<bool> is_far_field;
+  for (const Patch& patch : model.patches) is_far_field.push_back(patch.kind == "farfield");
+  return is_far_field;
+}
+
+/// The size of every boundary vertex that the grid uses.
+BoundarySizes boundary_sizes(const TetComplex& complex) {
+  BoundarySizes boundary;
+  for (VertexIndex v = 0; v < complex.num_vertices(); ++v) {
+    if (!complex.on_boundary[v] || complex.vertex_tet[v] == kNoIndex || !(complex.vertex[v].h > 0)) continue;
+    boundary.points.push_back(complex.point(v));
+    boundary.size.push_back(complex.vertex[v].h);
+  }
+  return boundary;
+}
+
+std::shared_ptr<const SizeField> build_size_field(const TetComplex& complex, const SizeOptions& options,
+                                                  std::shared_ptr<const SizeField> asked, Context& context) {
+  BoundarySizes boundary = boundary_sizes(complex);
+  const double largest = largest_size(boundary);
+  std::shared_ptr<const SizeField> of_boundary = build_asked_size_field(std::move(boundary), options, largest, context);
+  return asked ? combine_with_asked(std::move(of_boundary), std::move(asked), options) : of_boundary;
+}
+
+/// Surfaces are kept as they are given, whatever sizes are asked for: flat cells stand where the two do not fit.
+void warn_of_coarse_surface(const Model& model, const SizeOptions& options, Context& context) {
+  if (!options.hmax) return;
+  double longest = 0;
+  Point at;
+  for (const std::array<VertexId, 3>& triangle : model.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Point a = model.points[triangle[static_cast<std::size_t>(k)]],
+                  b = model.points[triangle[static_cast<std::size_t>((k + 1) % 3)]];
+      if (length(b - a) <= longest) continue;
+      longest = length(b - a);
+      at = 0.5 * (a + b);
+    }
+  if (longest > kMuchLonger * options.hmax->value)
+    context.warn(
+        fmt::format("edges of the surface are up to {:g} long (at {:g} {:g} {:g}), size.hmax is {:g}: the surface "
+                    "is kept as given, cells along it may be flat; give it finer triangles",
+                    longest, at.x, at.y, at.z, options.hmax->value));
+}
+
+/// The field's size at every vertex, so that all sizes keep the growth.
+void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
+  std::vector<Point> places;
+  for (const TetVertex& v : complex.vertex) places.push_back(v.point());
+  std::vector<double> sizes(places.size());
+  field.sizes(places, sizes);
+  for (std::size_t v = 0; v < sizes.size(); ++v) complex.vertex[v].h = sizes[v];
+}
+
+}  // namespace
+
+Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<const SizeField> asked, Report& report,
+                        Context& context) {
+  report.surface = prepare_surface(model, context);
+  refuse_invalid(report.surface);
+  Prepared prepared;
+  prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+  warn_of_coarse_surface(model, options.size, context);
+  prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
+  set_vertex_sizes(prepared.grid.complex, *prepared.size);
+  return prepared;
+}
+
+}  // namespace delfront

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums over boxes of an octree that the size field made; boxes on the border of the domain are halved until they are
+// about a cell wide, and taken by samples then.
+#include "pipeline/size_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "base/parallel.hpp"
+#include "delfront/errors.hpp"
+#include "sizing/size_octree.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr double kCellsPerVolume = 8.48528137423857;  ///< 6 sqrt(2)
+constexpr double kCellsPerArea = 2.3094010767585034;  ///< 4 / sqrt(3)
+constexpr double kCellsPerPoint = 5.6, kTrianglesPerPoint = 2;
+constexpr double kBorderWidth = 1.5;  ///< sizes; boxes on the border are halved until they are narrower
+constexpr std::size_t kGrain = 1 << 6;
+constexpr int kMaxHalvings = 12;
+
+// Of this program on one core of about 2.5 GHz; bench/compare_peers.py measures them (docs/performance.md).
+constexpr double kSecondsPerTet = 0.5e-6, kSecondsPerTetAndThread = 0.8e-6, kSecondsPerTriangle = 0.5e-6;
+constexpr double kBytesAtStart = 40e6, kBytesPerTet = 66, kBytesPerTriangle = 90;
+
+/// Places of two-point Gauss rules: their mean is exact for cubics.
+std::vector<Point> gauss_points(const Box& box, bool is_planar) {
+  const double t = 0.5 - 0.5 / std::sqrt(3.0);
+  std::vector<Point> at;
+  for (int k = 0; k < (is_planar ? 4 : 8); ++k) {
+    Point p = box.centre();
+    for (int axis = 0; axis < (is_planar ? 2 : 3); ++axis) {
+      const double w = k >> axis & 1 ? 1 - t : t;
+      p[axis] = (1 - w) * box.low[axis] + w * box.high[axis];
+    }
+    at.push_back(p);
+  }
+  return at;
+}
+
+double measure_of(const Box& box, bool is_planar) {
+  const Point side = box.high - box.low;
+  return side.x * side.y * (is_planar ? 1 : side.z);
+}
+
+struct Sum {
+  double measure = 0, cells = 0;
+  double least = std::numeric_limits<double>::infinity(), greatest = 0;
+};
+
+class Integral {
+ public:
+  Integral(const KeptDomain& domain, const SizeField& size) : domain_(domain), size_(size) {}
+
+  void add(const Box& box, int halvings, Sum& sum) const {
+    const bool is_crossed = domain_.is_crossed(box);
+    if (!is_crossed && !domain_.is_inside(box.centre())) return;
+    const Point side = box.high - box.low;
+    const bool is_wide = is_crossed && halvings < kMaxHalvings && side.x > kBorderWidth * size_.lower_bound(box);
+    if (is_wide) return add_parts(box, halvings, sum);
+    const std::vector<Point> at = gauss_points(box, domain_.is_planar());
+    std::vector<double> h(at.size());
+    size_.sizes(at, h);
+    const double part = measure_of(box, domain_.is_planar()) / static_cast<double>(at.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (is_crossed && !domain_.is_inside(at[i])) continue;
+      sum.measure += part;
+      sum.cells += part * (domain_.is_planar() ? kCellsPerArea / (h[i] * h[i]) : kCellsPerVolume / std::pow(h[i], 3));
+      sum.least = std::min(sum.least, h[i]);
+      sum.greatest = std::max(sum.greatest, h[i]);
+    }
+  }
+
+ private:
+  void add_parts(const Box& box, int halvings, Sum& sum) const {
+    const Point middle = box.centre();
+    for (int octant = 0; octant < (domain_.is_planar() ? 4 : 8); ++octant) {
+      Box part = box;
+      for (int axis = 0; axis < (domain_.is_planar() ? 2 : 3); ++axis)
+        (octant >> axis & 1 ? part.low : part.high)[axis] = middle[axis];
+      add(part, halvings + 1, sum);
+    }
+  }
+
+  const KeptDomain& domain_;
+  const SizeField& size_;
+};
+
+/// Whether the ray from p along x meets a triangle, seen along x.
+bool is_before(Point p, const std::array<Point, 3>& t) {
+  double side[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Point a = t[k], b = t[(k + 1) % 3];
+    side[k] = (b.y - a.y) * (p.z - a.z) - (b.z - a.z) * (p.y - a.y);
+  }
+  const bool is_in = (side[0] >= 0) == (side[1] >= 0) && (side[1] >= 0) == (side[2] >= 0);
+  const double whole = side[0] + side[1] + side[2];
+  if (!is_in || whole == 0) return false;
+  return (side[1] * t[0].x + side[2] * t[1].x + side[0] * t[2].x) / whole > p.x;
+}
+
+bool is_before_segment(Point p, Point a, Point b) {
+  if ((a.y > p.y) == (b.y > p.y)) return false;
+  return a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x;
+}
+
+}  // namespace
+
+KeptDomain::KeptDomain(const Prepared& prepared) {
+  const TetComplex& c = prepared.grid.complex;
+  for (TetIndex t = 0; t < c.num_slots(); ++t) {
+    if (c.is_dead(t) || c.is_ghost(t)) continue;
+    for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
+      if (!c.is_ghost(c.neigh[ref] >> 2)) continue;
+      const auto n = c.face_nodes(ref);
+      border_.push_back({c.point(n[0]), c.point(n[1]), c.point(n[2])});
+    }
+  }
+  build();
+}
+
+KeptDomain::KeptDomain(const PlanarPrepared& prepared) : is_planar_(true) {
+  const TriComplex& c = prepared.grid.complex;
+  for (const PlanarPiece& piece : prepared.grid.pieces) {
+    const EdgeRef ref = c.find_edge(piece.a, piece.b);
+    if ((c.tri[ref >> 2].region == kOutside) == (c.tri[c.across(ref) >> 2].region == kOutside)) continue;
+    const Point2 a = c.point[piece.a], b = c.point[piece.b];
+    border_.push_back({Point{a.x, a.y, 0}, Point{b.x, b.y, 0}, Point{b.x, b.y, 0}});
+  }
+  build();
+}
+
+void KeptDomain::build() {
+  std::vector<Box> boxes;
+  for (const std::array<Point, 3>& simplex : border_) {
+    Box& box = boxes.emplace_back();
+    for (const Point& p : simplex) box.add(p);
+    box_.add(box);
+  }
+  tree_ = Bvh(boxes);
+}
+
+bool KeptDomain::is_crossed(const Box& box) const {
+  bool found = false;
+  tree_.for_each_overlap(box, [&](std::uint32_t) { found = true; });
+  return found;
+}
+
+bool KeptDomain::is_inside(Point p) const {
+  if (!box_.overlaps({p, p})) return false;
+  bool inside = false;
+  tree_.for_each_overlap({p, {box_.high.x, p.y, p.z}}, [&](std::uint32_t i) {
+    const std::array<Point, 3>& s = border_[i];
+    inside ^= is_planar_ ? is_before_segment(p, s[0], s[1]) : is_before(p, s);
+  });
+  return inside;
+}
+
+Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context) {
+  const StageTimer timer(context, "estimate");
+  const SizeOctree octree(size, domain.box(), {}, context);
+  const std::vector<OctreeLeaf>& leaves = octree.leaves();
+  std::vector<Sum> sums((leaves.size() + kGrain - 1) / kGrain);
+  const Integral integral(domain, size);
+  parallel_ranges(context.threads, leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) integral.add(octree.box(leaves[i]), 0, sums[first / kGrain]);
+  });
+  Sum all;
+  for (const Sum& sum : sums) {
+    all.measure += sum.measure;
+    all.cells += sum.cells;
+    all.least = std::min(all.least, sum.least);
+    all.greatest = std::max(all.greatest, sum.greatest);
+  }
+  Estimate estimate;
+  const bool is_planar = domain.is_planar();
+  estimate.measure = all.measure;
+  estimate.cells = all.cells;
+  estimate.points = all.cells / (is_planar ? kTrianglesPerPoint : kCellsPerPoint);
+  estimate.least_size = all.least;
+  estimate.greatest_size = all.greatest;
+  estimate.memory = kBytesAtStart + all.cells * (is_planar ? kBytesPerTriangle : kBytesPerTet);
+  const double per_cell =
+      is_planar ? kSecondsPerTriangle : kSecondsPerTet + kSecondsPerTetAndThread / std::max(1, context.threads);
+  estimate.seconds = context.seconds_since_start() + all.cells * per_cell;
+  estimate.is_at_least = octree.is_cut_short();
+  return estimate;
+}
+
+Mesh size_mesh(const KeptDomain& domain, const SizeField& size, Context& context) {
+  const SizeOctree octree(size, domain.box(), {}, context);
+  Mesh mesh;
+  mesh.dimension = octree.dimension();
+  CellBlock& block = mesh.block(mesh.dimension == 3 ? CellType::hexahedron : CellType::quad);
+  const GroupId group = mesh.add_group(mesh.dimension, "sizes");
+  std::vector<VertexId> number(octree.corners().size());
+  Field h{"h", Field::On::vertices, CellType::vertex, 1, {}};
+  constexpr std::size_t kVtkOrder[8] = {0, 1, 3, 2, 4, 5, 7, 6};
+  for (const OctreeLeaf& leaf : octree.leaves()) {
+    const Box box = octree.box(leaf);
+    if (!domain.is_crossed(box) && !domain.is_inside(box.centre())) continue;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(octree.num_corners()); ++k) {
+      const std::uint32_t corner = leaf.corner[kVtkOrder[k]];
+      if (!number[corner].is_valid()) {
+        number[corner] = VertexId(mesh.points.size());
+        mesh.points.push_back(octree.corners()[corner]);
+        h.values.push_back(octree.corner_sizes()[corner]);
+      }
+      block.vertices.push_back(number[corner]);
+    }
+    block.group.push_back(group);
+  }
+  mesh.fields.push_back(std::move(h));
+  return mesh;
+}
+
+}  // namespace delfront
