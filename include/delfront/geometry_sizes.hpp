@@ -105,7 +105,8 @@ struct GapSizes {
 GeometrySources find_gap_sizes(const Model& model, const GapSizes& wish, Context& context);
 
 /// @brief The same between lines across a patch: borders of patches, creases, open edges. From places on each line the
-/// patch is walked square to the line, over its triangles, to the next line; `facing_deg` is between the lines' normals.
+/// patch is walked square to the line, over its triangles, to the next line; `facing_deg` is between the lines'
+/// normals.
 GeometrySources find_line_gap_sizes(const Model& model, const GapSizes& wish, Context& context);
 
 /// @brief Sizes without any input (S11).

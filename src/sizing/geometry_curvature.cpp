@@ -3,7 +3,8 @@
 // their angles. A tensor S with S e = (difference of the normals) for the three sides e is fitted to each triangle, and
 // another to all triangles round each corner, laid into its tangent plane by turning them. Inscribed in a sphere or a
 // cylinder and with true normals both fits are exact for triangles of any size. What one triangle says alone is noise
-// where it is a needle; what its corners say alone reaches into flat faces beside fillets: the smaller of both is taken.
+// where it is a needle; what its corners say alone reaches into flat faces beside fillets: the smaller of both is
+// taken.
 #include <algorithm>
 #include <cmath>
 
@@ -79,7 +80,8 @@ std::vector<Point> sector_normals(const Facets& facets, const std::vector<std::u
 void check_wish(const CurvatureSizes& wish) {
   check_bounds("curvature", wish.hmin, wish.hmax);
   if (wish.cells_per_turn && !(*wish.cells_per_turn >= 1 && std::isfinite(*wish.cells_per_turn)))
-    throw UsageError(fmt::format("curvature = {}: cells per 2 pi, at least 1; usual are 8 to 40", *wish.cells_per_turn));
+    throw UsageError(
+        fmt::format("curvature = {}: cells per 2 pi, at least 1; usual are 8 to 40", *wish.cells_per_turn));
   if (wish.angle_deg && !(*wish.angle_deg > 0 && *wish.angle_deg < 180))
     throw UsageError(fmt::format("angle = {}: degrees between adjacent faces, above 0 and below 180; usual are 5 to 30",
                                  *wish.angle_deg));
@@ -87,13 +89,7 @@ void check_wish(const CurvatureSizes& wish) {
     throw UsageError(fmt::format("deviation = {}: a length above 0", *wish.deviation));
 }
 
-/// 1 / radius of the circle through three points; 0 on a line.
-double circle_curvature(Point a, Point b, Point c) {
-  const double sides = distance(a, b) * distance(b, c) * distance(c, a);
-  return sides > 0 ? 2 * length(cross(b - a, c - a)) / sides : 0;
-}
-
-/// Feature lines: the circle through three successive points, where a line goes on without a corner.
+/// Feature lines: half of the turn at both ends over the length, exact for points evenly round a circle.
 void add_line_sizes(const Facets& facets, const CurvatureSizes& wish, double largest, GeometrySources& found) {
   const Model& model = facets.model;
   struct Joint {
@@ -114,19 +110,20 @@ void add_line_sizes(const Facets& facets, const CurvatureSizes& wish, double lar
     const auto [a, b] = facets.edges.ends(e);
     return model.points[a == v ? b : a];
   };
-  const auto curvature_at = [&](VertexId v) {
+  // sine of half the turn; negative where the line ends or has a corner
+  const auto half_turn_at = [&](VertexId v) {
     const Joint& joint = joints[v.index()];
     if (joint.count != 2) return -1.0;
     const Point p = model.points[v], a = other_end(joint.edge[0], v), b = other_end(joint.edge[1], v);
-    const double cos_turn = dot(p - a, b - p) / (distance(a, p) * distance(p, b));
-    return cos_turn < cos_corner ? -1.0 : circle_curvature(a, p, b);
+    const Point from = (p - a) / distance(a, p), to = (b - p) / distance(p, b);
+    return dot(from, to) < cos_corner ? -1.0 : 0.5 * distance(from, to);
   };
   for (std::uint32_t e = 0; e < facets.edges.size(); ++e) {
     if (!facets.is_crease[e]) continue;
     const auto [a, b] = facets.edges.ends(e);
-    const double first = curvature_at(a), second = curvature_at(b);
-    // a straight piece beside an arc is straight; at a corner the other end decides
-    const double curvature = first < 0 ? second : second < 0 ? first : std::min(first, second);
+    const double first = half_turn_at(a), second = half_turn_at(b);
+    const double sum = first < 0 ? 2 * second : second < 0 ? 2 * first : first + second;
+    const double curvature = sum / distance(model.points[a], model.points[b]);
     if (!(curvature > 0)) continue;
     const double h = size_on_radius(1 / curvature, wish);
     if (h < largest) add_source(found, simplex(model.points[a], model.points[b]), h, wish.hmin, "curvature");

@@ -52,14 +52,14 @@ Facets::Facets(const Model& m) : model(m) {
     if (start_of(half[0]) == start_of(half[1])) continue;  // orientations disagree
     turn[e] = angle_between(normal[half[0] / 3], normal[half[1] / 3]);
     is_crease[e] = turn[e] > m.feature_angle * kPi / 180;
-    is_line[e] = is_crease[e] ||
-                 m.patch_of_triangle[TriangleId(half[0] / 3)] != m.patch_of_triangle[TriangleId(half[1] / 3)];
+    is_line[e] =
+        is_crease[e] || m.patch_of_triangle[TriangleId(half[0] / 3)] != m.patch_of_triangle[TriangleId(half[1] / 3)];
   }
 }
 
 std::array<Point, 2> plane_frame(Point normal) {
   const bool is_x_least = std::abs(normal.x) <= std::abs(normal.y) && std::abs(normal.x) <= std::abs(normal.z);
-  const Point axis = is_x_least                               ? Point{1, 0, 0}
+  const Point axis = is_x_least                                 ? Point{1, 0, 0}
                      : std::abs(normal.y) <= std::abs(normal.z) ? Point{0, 1, 0}
                                                                 : Point{0, 0, 1};
   Point u = cross(normal, axis);

@@ -25,17 +25,15 @@ class Facets {
 
   const Model& model;
   SurfaceEdges edges;
-  std::vector<bool> is_used;   ///< by triangle: has an area
-  std::vector<Point> normal;   ///< by triangle, unit; zero where there is no area
-  std::vector<double> area;    ///< by triangle
-  std::vector<double> turn;    ///< by edge: angle between the normals of its two triangles, radians
+  std::vector<bool> is_used;    ///< by triangle: has an area
+  std::vector<Point> normal;    ///< by triangle, unit; zero where there is no area
+  std::vector<double> area;     ///< by triangle
+  std::vector<double> turn;     ///< by edge: angle between the normals of its two triangles, radians
   std::vector<bool> is_crease;  ///< by edge: turns by more than the feature angle, or no two triangles that agree
-  std::vector<bool> is_line;   ///< by edge: a crease, or between patches
+  std::vector<bool> is_line;    ///< by edge: a crease, or between patches
 
   std::size_t num_triangles() const { return normal.size(); }
-  Point corner(std::size_t t, std::size_t k) const {
-    return model.points[model.triangles[TriangleId(t)][k]];
-  }
+  Point corner(std::size_t t, std::size_t k) const { return model.points[model.triangles[TriangleId(t)][k]]; }
   std::array<Point, 3> corners(std::size_t t) const { return {corner(t, 0), corner(t, 1), corner(t, 2)}; }
   Point start(std::uint32_t half_edge) const { return corner(half_edge / 3, half_edge % 3); }
   Point end(std::uint32_t half_edge) const { return corner(half_edge / 3, (half_edge + 1) % 3); }
@@ -50,8 +48,8 @@ class Facets {
 
 /// @brief Curvature of each triangle.
 struct Curvature {
-  std::vector<double> largest;       ///< by triangle: 1 / r, largest of all directions; 0: flat
-  std::vector<PlaneTensor> tensor;   ///< by triangle, in plane_frame() of it
+  std::vector<double> largest;      ///< by triangle: 1 / r, largest of all directions; 0: flat
+  std::vector<PlaneTensor> tensor;  ///< by triangle, in plane_frame() of it
 };
 
 /// @brief Two unit vectors that with `normal` make a right-handed frame.
