@@ -12,9 +12,10 @@ cmake --build "$build" --target fuzzers --parallel "$(nproc)"
 mkdir -p "$build/finds"
 "$build/tests/fuzz/make_seeds" "$build/seeds"
 failed=0
-for source in "$root"/tests/fuzz/fuzz_read_*.cpp; do
+for source in "$root"/tests/fuzz/fuzz_*.cpp; do
   name=$(basename "$source" .cpp)
-  format=${name#fuzz_read_}
+  format=${name#fuzz_}
+  format=${format#read_}
   mkdir -p "$build/corpus/$format" "$build/seeds/$format"
   log="$build/finds/$name.log"
   if "$build/tests/fuzz/$name" -max_total_time="$seconds" -max_len=8192 -rss_limit_mb=1024 -timeout=10 \

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "base/nearest_name.hpp"
+#include "delfront/errors.hpp"
+#include "fmt/format.h"
+#include "sizing/geometry_facets.hpp"
+
+namespace delfront {
+namespace {
+
+std::vector<std::string> all_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Patch& patch : model.patches) names.push_back(patch.name);
+  for (const Curve& curve : model.curves) names.push_back(curve.name);
+  names.insert(names.end(), model.corner_names.begin(), model.corner_names.end());
+  std::erase(names, std::string());
+  return names;
+}
+
+[[noreturn]] void fail_unmatched(const Model& model, const std::string& pattern) {
+  constexpr std::size_t kMostShown = 20;
+  std::vector<std::string> names = all_names(model);
+  const std::string near = nearest_name(pattern, names);
+  const std::size_t more = names.size() > kMostShown ? names.size() - kMostShown : 0;
+  names.resize(names.size() - more);
+  throw UsageError(fmt::format("size on '{}': no patch, curve or corner has such a name{}; there are: {}{}", pattern,
+                               near.empty() ? "" : fmt::format("; did you mean '{}'?", near),
+                               names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", ")),
+                               more > 0 ? fmt::format(" and {} more", more) : ""));
+}
+
+}  // namespace
+
+bool fits_pattern(const std::string& name, const std::string& pattern) {
+  // after a mismatch the last * takes one letter more
+  constexpr std::size_t kNone = std::string::npos;
+  std::size_t n = 0, p = 0, star = kNone, star_at = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      star_at = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++p;
+      ++n;
+    } else if (star != kNone) {
+      p = star + 1;
+      n = ++star_at;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+GeometrySources find_named_sizes(const Model& model, std::span<const NamedSize> sizes, Context& context) {
+  constexpr double kNoSize = std::numeric_limits<double>::infinity();
+  std::vector<double> on_patch(model.patches.size(), kNoSize), on_curve(model.curves.size(), kNoSize),
+      on_corner(model.corners.size(), kNoSize);
+  for (const NamedSize& wish : sizes) {
+    if (!(wish.h > 0) || std::isinf(wish.h))
+      throw UsageError(fmt::format("size on '{}': h must be positive, not {}", wish.pattern, wish.h));
+    bool is_found = false;
+    const auto match = [&](std::vector<double>& on, std::size_t i, const std::string& name) {
+      if (!fits_pattern(name, wish.pattern)) return;
+      is_found = true;
+      on[i] = std::min(on[i], wish.h);
+    };
+    for (std::size_t i = 0; i < on_patch.size(); ++i) match(on_patch, i, model.patches[PatchId(i)].name);
+    for (std::size_t i = 0; i < on_curve.size(); ++i) match(on_curve, i, model.curves[CurveId(i)].name);
+    for (std::size_t i = 0; i < std::min(on_corner.size(), model.corner_names.size()); ++i)
+      match(on_corner, i, model.corner_names[i]);
+    if (!is_found) fail_unmatched(model, wish.pattern);
+  }
+  GeometrySources found;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    if (t % 4096 == 0) context.check_limits();
+    const PatchId patch = model.patch_of_triangle[TriangleId(t)];
+    if (std::isinf(on_patch[patch.index()])) continue;
+    const auto& [a, b, c] = model.triangles[TriangleId(t)];
+    add_source(found, simplex({model.points[a], model.points[b], model.points[c]}), on_patch[patch.index()], 0,
+               model.patches[patch].name);
+  }
+  for (std::size_t i = 0; i < model.curves.size(); ++i) {
+    const Curve& curve = model.curves[CurveId(i)];
+    if (std::isinf(on_curve[i])) continue;
+    for (std::size_t k = 0; k + 1 < curve.vertices.size(); ++k)
+      add_source(found, simplex(model.points[curve.vertices[k]], model.points[curve.vertices[k + 1]]), on_curve[i], 0,
+                 curve.name);
+  }
+  for (std::size_t i = 0; i < model.corners.size(); ++i)
+    if (!std::isinf(on_corner[i]))
+      add_source(found, simplex(model.points[model.corners[i]]), on_corner[i], 0, model.corner_names[i]);
+  return found;
+}
+
+GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context) {
+  check_bounds("automatic sizes", wish.hmin, std::numeric_limits<double>::infinity());
+  GeometrySources found = find_named_sizes(model, wish.named, context);
+  constexpr double kUsualShare = 1e-4;
+  const double hmin = wish.hmin > 0 ? wish.hmin : kUsualShare * model.surface_box().diagonal();
+  if (wish.cells_per_turn) {
+    CurvatureSizes curvature;
+    curvature.cells_per_turn = wish.cells_per_turn;
+    curvature.hmin = hmin;
+    found.append(find_curvature_sizes(model, curvature, context));
+  }
+  GapSizes gap;
+  gap.hmin = hmin;
+  gap.side = wish.side;
+  if (wish.gap_cells) {
+    gap.cells = *wish.gap_cells;
+    found.append(find_gap_sizes(model, gap, context));
+  }
+  if (wish.line_cells) {
+    gap.cells = *wish.line_cells;
+    found.append(find_line_gap_sizes(model, gap, context));
+  }
+  return found;
+}
+
+}  // namespace delfront
