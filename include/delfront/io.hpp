@@ -33,7 +33,9 @@ const FormatInfo& format_of(const std::string& path, const std::string& format =
 /// @brief Read a file; the type comes from the extension unless `format` names one. A folder is an OpenFOAM case.
 ///
 /// STL and other facet files come as triangles (polygons kept) with one group of dimension 2 a solid or named group;
-/// points as they stand in the file, not welded (STL: three a facet).
+/// points as they stand in the file, not welded (STL: three a facet). Node fields come along from VTK files, MSH
+/// ($NodeData, $ElementNodeData), .pos views and Medit solutions (.sol beside the .mesh); symmetric tensors have the
+/// order xx yy zz xy yz xz, in the plane xx xy yy.
 /// @throws InputError  missing, empty, truncated, malformed (what, where: line or byte, what to try)
 Mesh read_mesh(const std::string& path, Context& context, const std::string& format = "");
 

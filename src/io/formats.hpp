@@ -34,6 +34,10 @@ Mesh read_vtp(std::string_view bytes, const std::string& path, Context& context)
 Mesh read_msh(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_medit(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_su2(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_pos(std::string_view bytes, const std::string& path, Context& context);
+
+/// @brief Add the fields of a Medit solution to its mesh; a warning where the number of nodes is another.
+void read_sol(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context);
 
 void write_stl(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_obj(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);

@@ -16,6 +16,7 @@
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
 #include "io/msh_types.hpp"
+#include "io/node_means.hpp"
 
 namespace delfront {
 
@@ -80,11 +81,82 @@ class MshReader {
     } else if (name == "Elements") {
       cursor_.skip_line();
       is_v4_ ? read_elements4() : read_elements2();
+    } else if (name == "NodeData" || name == "ElementNodeData") {
+      read_data(name == "NodeData");
     } else {
       skip_section(name);
       return;
     }
     end_section(name);
+  }
+
+  /// Values as read: each entry is a node with one value, or an element with one a corner; tags are the file's.
+  struct Data {
+    std::string name;
+    double time = 0;
+    int components = 1;
+    bool is_on_nodes = true;
+    std::vector<std::int64_t> tags;
+    std::vector<std::uint32_t> corners;
+    std::vector<double> values;
+  };
+
+  /// $NodeData and $ElementNodeData: string, real and integer tags as text, then the entries.
+  void read_data(bool is_on_nodes) {
+    Data data;
+    data.is_on_nodes = is_on_nodes;
+    const std::size_t num_names = cursor_.count("number of string tags", 2);
+    cursor_.skip_line();
+    for (std::size_t i = 0; i < num_names; ++i) {
+      std::string_view name = cursor_.rest_of_line();
+      if (name.size() >= 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+      if (i == 0) data.name = name;
+    }
+    const std::size_t num_reals = cursor_.count("number of real tags", 2);
+    for (std::size_t i = 0; i < num_reals; ++i) {
+      const double value = cursor_.number("real tag");
+      if (i == 0) data.time = value;
+    }
+    const std::size_t num_integers = cursor_.count("number of integer tags", 2);
+    if (num_integers < 3) cursor_.fail("a view has at least three integer tags: time step, components, entries");
+    std::size_t num_entries = 0;
+    for (std::size_t i = 0; i < num_integers; ++i) {
+      if (i == 1)
+        data.components = static_cast<int>(cursor_.integer_in("number of components", 1, 9));
+      else if (i == 2)
+        num_entries = cursor_.count("number of entries", 2 * static_cast<std::size_t>(data.components));
+      else
+        cursor_.integer("integer tag");
+    }
+    cursor_.skip_line();
+    read_entries(num_entries, data);
+    take_data(std::move(data));
+  }
+
+  void read_entries(std::size_t num_entries, Data& data) {
+    for (std::size_t i = 0; i < num_entries; ++i) {
+      if (i % kCheckEvery == 0) context_.check_limits();
+      data.tags.push_back(int32("tag of a value"));
+      std::size_t num_values = static_cast<std::size_t>(data.components);
+      if (!data.is_on_nodes) {
+        const std::size_t corners = cursor_.checked_count(int32("number of corners"), "number of corners", 2);
+        data.corners.push_back(static_cast<std::uint32_t>(corners));
+        num_values *= corners;
+      }
+      for (std::size_t k = 0; k < num_values; ++k) data.values.push_back(real("value"));
+    }
+  }
+
+  /// Of several time steps the last.
+  void take_data(Data&& data) {
+    for (Data& known : data_) {
+      if (known.name != data.name || known.is_on_nodes != data.is_on_nodes) continue;
+      context_.warn(
+          fmt::format("{}: '{}' comes several times; the one with the latest time is kept", cursor_.path(), data.name));
+      if (data.time >= known.time) known = std::move(data);
+      return;
+    }
+    data_.push_back(std::move(data));
   }
 
   void end_section(const std::string& name) {
@@ -265,13 +337,18 @@ class MshReader {
   }
 
   /// From the file's node tags to positions; dense tags 1 … n need no table.
-  VertexId vertex(std::int64_t tag, const RawCell& cell) const {
+  std::optional<VertexId> find_vertex(std::int64_t tag) const {
     if (is_dense_) {
       if (tag >= 1 && tag <= static_cast<std::int64_t>(mesh_.points.size()))
         return VertexId(static_cast<std::size_t>(tag - 1));
     } else if (const auto found = vertex_of_tag_.find(tag); found != vertex_of_tag_.end()) {
       return VertexId(static_cast<std::size_t>(found->second));
     }
+    return std::nullopt;
+  }
+
+  VertexId vertex(std::int64_t tag, const RawCell& cell) const {
+    if (const std::optional<VertexId> found = find_vertex(tag)) return *found;
     throw InputError(fmt::format("{}: element {} ({}) has the node {}, which the file does not hold", cursor_.path(),
                                  cell.tag, name_of(cell.type), tag));
   }
@@ -299,6 +376,7 @@ class MshReader {
       const std::int64_t tag = has_physical[static_cast<std::size_t>(d)] ? cell.physical : cell.entity;
       add_cell(mesh_, cell.type, corners, tag != 0 && !is_no_group(d, tag) ? groups(d, tag) : GroupId());
     }
+    set_fields();
   }
 
   /// write_msh puts cells without a group behind the named ones of their dimension.
@@ -306,6 +384,51 @@ class MshReader {
     const auto& names = names_[static_cast<std::size_t>(d)];
     const bool has_names = std::any_of(names_.begin(), names_.end(), [](const auto& some) { return !some.empty(); });
     return has_names && tag == static_cast<std::int64_t>(names.size()) + 1 && !names.contains(tag);
+  }
+
+  void set_fields() {
+    std::size_t total = 0;
+    for (const Data& data : data_) {
+      total += mesh_.points.size() * static_cast<std::size_t>(data.components);
+      if (total > cursor_.bytes().size())
+        throw InputError(fmt::format("{}: too few nodes have values of '{}' ({} entries for {} nodes)", cursor_.path(),
+                                     data.name, data.tags.size(), mesh_.points.size()));
+      NodeMeans means(mesh_.points.size(), data.components);
+      if (data.is_on_nodes)
+        add_node_values(data, means);
+      else
+        add_corner_values(data, means);
+      if (means.differ())
+        context_.warn(fmt::format("{}: the cells of '{}' differ at the nodes they share; the mean is taken",
+                                  cursor_.path(), data.name));
+      mesh_.fields.push_back(means.take(data.name));
+    }
+  }
+
+  void add_node_values(const Data& data, NodeMeans& means) const {
+    for (std::size_t i = 0; i < data.tags.size(); ++i) {
+      const std::optional<VertexId> node = find_vertex(data.tags[i]);
+      if (!node)
+        throw InputError(fmt::format("{}: '{}' has a value for node {}, which the file does not hold", cursor_.path(),
+                                     data.name, data.tags[i]));
+      means.add(node->index(), data.values.data() + i * static_cast<std::size_t>(data.components));
+    }
+  }
+
+  /// cells_ is sorted by tag here.
+  void add_corner_values(const Data& data, NodeMeans& means) const {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < data.tags.size(); ++i) {
+      const auto cell = std::lower_bound(cells_.begin(), cells_.end(), data.tags[i],
+                                         [](const RawCell& c, std::int64_t tag) { return c.tag < tag; });
+      const std::string what =
+          fmt::format("{}: '{}' has values for element {}", cursor_.path(), data.name, data.tags[i]);
+      if (cell == cells_.end() || cell->tag != data.tags[i]) throw InputError(what + ", which the file does not hold");
+      if (data.corners[i] != static_cast<std::uint32_t>(num_vertices(cell->type)))
+        throw InputError(fmt::format("{} with {} corners, but it is a {}", what, data.corners[i], name_of(cell->type)));
+      for (std::size_t k = 0; k < data.corners[i]; ++k, at += static_cast<std::size_t>(data.components))
+        means.add(vertex(pool_[cell->first_vertex + k], *cell).index(), data.values.data() + at);
+    }
   }
 
   /// Before the groups are named, since "patch" and "region" depend on it.
@@ -325,6 +448,7 @@ class MshReader {
   std::vector<std::int64_t> node_tags_, pool_;
   std::unordered_map<std::int64_t, std::uint32_t> vertex_of_tag_;
   std::vector<RawCell> cells_;
+  std::vector<Data> data_;
 };
 
 }  // namespace

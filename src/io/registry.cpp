@@ -37,6 +37,7 @@ const std::vector<Format>& table() {
       {"vtu", "VTK XML unstructured grid", {".vtu"}, read_vtu, write_vtu},
       {"vtp", "VTK XML surface", {".vtp"}, read_vtp, write_vtp},
       {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_msh, write_msh},
+      {"pos", "Gmsh parsed views (ASCII)", {".pos"}, read_pos, nullptr},
       {"medit", "Medit, MMG", {".mesh"}, read_medit, write_medit},
       {"su2", "SU2", {".su2"}, read_su2, write_su2},
       {kFolderFormat, "OpenFOAM polyMesh in a case folder", {"/"}, nullptr, nullptr},
@@ -114,12 +115,31 @@ const FormatInfo& format_of(const std::string& path, const std::string& format, 
   return formats()[static_cast<std::size_t>(&found - table().data())];
 }
 
+namespace {
+
+/// A Medit solution of the same stem stands beside its mesh.
+void read_solution_beside(const std::string& path, Mesh& mesh, Context& context) {
+  const std::filesystem::path stem = std::filesystem::path(path).replace_extension();
+  const std::string text = stem.string() + ".sol", binary = stem.string() + ".solb";
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(text, ignored)) {
+    const FileBytes bytes(text);
+    read_sol(bytes.view(), text, mesh, context);
+  } else if (std::filesystem::is_regular_file(binary, ignored)) {
+    context.warn(fmt::format("{}: binary Medit solutions are not read; save it as ASCII .sol", binary));
+  }
+}
+
+}  // namespace
+
 Mesh read_mesh(const std::string& path, Context& context, const std::string& format) {
   const Format& found = find_format(path, format, false);
   if (is_folder(found)) return read_openfoam(path, context);
   const FileBytes bytes(path);
   context.check_limits();
-  return found.read(bytes.view(), path, context);
+  Mesh mesh = found.read(bytes.view(), path, context);
+  if (found.read == read_medit) read_solution_beside(path, mesh, context);
+  return mesh;
 }
 
 std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, Context& context,

@@ -61,9 +61,12 @@ class GridField final : public BackgroundField {
   bool find_overlaps() const;
   bool find_convexity() const;
 
+  struct Hint {  // what the point before found
+    std::uint32_t cell = kNone, source = kNone, rim = kNone;
+  };
   std::uint32_t walk(Point p, std::uint32_t from) const;
   std::uint32_t search(Point p) const;
-  std::uint32_t locate(Point p, std::uint32_t& hint) const;
+  std::uint32_t locate(Point p, Hint& hint) const;
   struct Weights {
     std::array<std::uint32_t, 4> node;
     std::array<double, 4> weight;  // not negative, sum 1 to rounding
@@ -74,18 +77,19 @@ class GridField final : public BackgroundField {
   Point place_of(const Weights& weights) const;
   double interpolated_size(const Weights& weights) const;
   Metric interpolated_metric(const Weights& weights) const;
-  double least_cone(Point p, double start) const;
+  double least_cone(Point p, double start, Hint& hint) const;
   double least_cone_from(const Box& box, double start) const;
   SizedFace face(std::uint32_t index) const;
-  double size_at(Point p, std::uint32_t& hint) const;
+  double size_at(Point p, Hint& hint) const;
 
   SimplexGrid grid_;
   std::string name_;
   std::vector<double> node_size_;     // of metrics the least
   std::vector<Metric> log_metric_;    // empty: isotropic
   std::vector<float> inside_;         // one a cell: what counts as 0 among its barycentric coordinates
-  std::vector<std::uint32_t> steep_;  // cells from which the growth limit works
-  PackedTree cells_, boundary_, sources_;
+  std::vector<std::uint32_t> steep_;  // cells from which the limit of growth works
+  std::vector<std::uint32_t> rim_;    // faces of the boundary from which it does
+  PackedTree cells_, boundary_, sources_, rim_tree_;
   Box box_;
   bool has_overlaps_ = false, has_pockets_ = false;
   double slope_ = kInfinity;
@@ -178,16 +182,53 @@ void GridField::build_trees(Context& context) {
   boundary_ = PackedTree(boxes, least);
 }
 
+/// Tree over some simplices of the grid, given by their corners.
+template <class Corners>
+PackedTree tree_of(const SimplexGrid& grid, const std::vector<double>& size, std::span<const std::uint32_t> items,
+                   const Corners& corners_of) {
+  std::vector<Box> boxes(items.size());
+  std::vector<double> least(items.size(), kInfinity);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    for (std::uint32_t v : corners_of(items[i])) {
+      boxes[i].add(grid.points[v]);
+      least[i] = std::min(least[i], size[v]);
+    }
+  return PackedTree(boxes, least);
+}
+
+/// The limit works from steep cells and, in a grid with pockets, from the boundary. Not from those that lie above the
+/// cone of one node altogether (which they do where their corners do, since a cone is convex).
 void GridField::build_sources() {
+  const auto corners_of_cell = [&](std::uint32_t cell) { return grid_.corners(cell); };
+  const auto corners_of_face = [&](std::uint32_t i) { return std::span<const std::uint32_t>(grid_.boundary[i]); };
   steep_ = find_steep_cells(grid_, node_size_, slope_);
-  std::vector<Box> boxes;
-  std::vector<double> least;
-  for (std::uint32_t cell : steep_) {
-    boxes.push_back(grid_.box_of(cell));
-    least.push_back(kInfinity);
-    for (std::uint32_t v : grid_.corners(cell)) least.back() = std::min(least.back(), node_size_[v]);
-  }
-  sources_ = PackedTree(boxes, least);
+  if (has_pockets_)
+    for (std::uint32_t i = 0; i < grid_.boundary.size(); ++i) rim_.push_back(i);
+  const std::vector<std::uint32_t> all = steep_;
+  const PackedTree nodes = tree_of(grid_, node_size_, all, corners_of_cell);
+  const auto cone = [&](std::uint32_t from, std::uint32_t at) {
+    return node_size_[from] + slope_ * distance(grid_.points[from], grid_.points[at]);
+  };
+  const auto lowest_at = [&](std::uint32_t item, std::uint32_t at) {
+    const auto v = corners_of_cell(all[item]);
+    return *std::min_element(v.begin(), v.end(), [&](auto a, auto b) { return cone(a, at) < cone(b, at); });
+  };
+  const auto is_above_one = [&](std::span<const std::uint32_t> v) {
+    const std::uint32_t low = *std::min_element(
+        v.begin(), v.end(), [&](std::uint32_t a, std::uint32_t b) { return node_size_[a] < node_size_[b]; });
+    const Point p = grid_.points[low];
+    const PackedTree::Best best = nodes.minimize(
+        [&](const PackedTree::Node& node) { return node.least + slope_ * std::sqrt(squared_distance(p, node.box)); },
+        [&](std::uint32_t item) { return cone(lowest_at(item, low), low); });
+    if (!best.found()) return false;
+    const std::uint32_t from = lowest_at(best.item, low);
+    return std::all_of(v.begin(), v.end(),
+                       [&](std::uint32_t at) { return cone(from, at) < kBoundSlack * node_size_[at]; });
+  };
+  std::erase_if(steep_, [&](std::uint32_t cell) { return is_above_one(corners_of_cell(cell)); });
+  std::erase_if(rim_, [&](std::uint32_t i) { return is_above_one(corners_of_face(i)); });
+  sources_ = tree_of(grid_, node_size_, steep_, corners_of_cell);
+  rim_tree_ = tree_of(grid_, node_size_, rim_, corners_of_face);
 }
 
 /// Where cells overlap, some vertex or centre of the boundary lies strictly inside a cell (but for edges that cross).
@@ -291,11 +332,11 @@ std::uint32_t GridField::search(Point p) const {
   return strict != kNone ? strict : loose;
 }
 
-/// @return the cell of p, kNone outside; `hint` is that of the point before and gets that of this one
-std::uint32_t GridField::locate(Point p, std::uint32_t& hint) const {
-  std::uint32_t cell = hint != kNone && !has_overlaps_ ? walk(p, hint) : kNone;
+/// @return the cell of p, kNone outside; the hint's is that of the point before and becomes that of this one
+std::uint32_t GridField::locate(Point p, Hint& hint) const {
+  std::uint32_t cell = hint.cell != kNone && !has_overlaps_ ? walk(p, hint.cell) : kNone;
   if (cell == kNone) cell = search(p);
-  if (cell != kNone) hint = cell;
+  if (cell != kNone) hint.cell = cell;
   return cell;
 }
 
@@ -359,33 +400,41 @@ Metric GridField::interpolated_metric(const Weights& weights) const {
   return is_plane() ? plane_metric(result) : result;
 }
 
-/// The least over all places from which the limit works, at most `start`.
-double GridField::least_cone(Point p, double start) const {
+/// The least over all places from which the limit works, at most `start`. Bounds are a little low, so that nothing
+/// below the result is ever passed over, wherever the search began.
+double GridField::least_cone(Point p, double start, Hint& hint) const {
   const auto bound = [&](const PackedTree::Node& node) {
-    return node.least + slope_ * std::sqrt(squared_distance(p, node.box));
+    return kBoundSlack * (node.least + slope_ * std::sqrt(squared_distance(p, node.box)));
   };
   const auto from_steep = [&](std::uint32_t i) { return least_cone_on_cell(p, grid_, steep_[i], node_size_, slope_); };
-  const double best = sources_.minimize(bound, from_steep, {kNone, start}).value;
-  if (!has_pockets_) return best;
-  const auto from_boundary = [&](std::uint32_t i) { return least_cone_on_face(p, face(i), slope_); };
-  return boundary_.minimize(bound, from_boundary, {kNone, best}).value;
+  const auto from_boundary = [&](std::uint32_t i) { return least_cone_on_face(p, face(rim_[i]), slope_); };
+  PackedTree::Best best{kNone, start};
+  const auto search_from = [&](const PackedTree& tree, const auto& value_of, std::uint32_t& last) {
+    if (last != kNone) best.value = std::min(best.value, value_of(last));
+    best.item = kNone;
+    best = tree.minimize(bound, value_of, best);
+    if (best.found()) last = best.item;
+  };
+  search_from(sources_, from_steep, hint.source);
+  search_from(rim_tree_, from_boundary, hint.rim);
+  return best.value;
 }
 
-double GridField::size_at(Point p, std::uint32_t& hint) const {
+double GridField::size_at(Point p, Hint& hint) const {
   if (has_pockets_)
     for (int k = 0; k < grid_.dimension; ++k) p[k] = std::clamp(p[k], box_.low[k], box_.high[k]);
   const std::uint32_t cell = locate(p, hint);
-  if (cell == kNone && has_pockets_) return least_cone(p, largest_);
+  if (cell == kNone && has_pockets_) return least_cone(p, largest_, hint);
   const Weights weights = cell == kNone ? weights_outside(p) : weights_in(p, cell);
   if (!is_isotropic()) return least_size(interpolated_metric(weights));
   const double size = interpolated_size(weights);
-  if (steep_.empty() && !has_pockets_) return size;
-  return least_cone(cell == kNone ? place_of(weights) : p, size);
+  if (steep_.empty() && rim_.empty()) return size;
+  return least_cone(cell == kNone ? place_of(weights) : p, size, hint);
 }
 
 void GridField::sizes(std::span<const Point> at, std::span<double> size) const {
   DELFRONT_CHECK(at.size() == size.size());
-  std::uint32_t hint = kNone;
+  Hint hint;
   for (std::size_t i = 0; i < at.size(); ++i) {
     check_point(at[i]);
     size[i] = size_at(flat(at[i]), hint);
@@ -395,7 +444,7 @@ void GridField::sizes(std::span<const Point> at, std::span<double> size) const {
 void GridField::metrics(std::span<const Point> at, std::span<Metric> metric) const {
   if (is_isotropic()) return SizeField::metrics(at, metric);
   DELFRONT_CHECK(at.size() == metric.size());
-  std::uint32_t hint = kNone;
+  Hint hint;
   for (std::size_t i = 0; i < at.size(); ++i) {
     check_point(at[i]);
     const Point p = flat(at[i]);
@@ -440,11 +489,11 @@ double GridField::least_cone_from(const Box& box, double start) const {
     return node.least + slope_ * length(away);
   };
   const double best = sources_.least_bound(bound, start);
-  return has_pockets_ ? boundary_.least_bound(bound, best) : best;
+  return rim_tree_.least_bound(bound, best);
 }
 
 double GridField::share_outside(std::span<const Point> points) const {
-  std::uint32_t hint = kNone;
+  Hint hint;
   std::size_t outside = 0;
   for (const Point& p : points) {
     check_point(p);

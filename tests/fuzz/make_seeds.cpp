@@ -134,6 +134,17 @@ int main(int argc, char** argv) {
              "4 2 1 1\n1 0 0 9 1\n2 1 0 9 1\n3 1 1 9 0\n4 0 1 9 2\n4 1\n1 1 2 1\n2 2 3 1\n3 3 4 2\n4 4 1 0\n1\n1 2 "
              "2\n1\n1 .5 .5 7 .1\n");
   write_text(root, "dat", "name\n 3. 3.\n\n0 0\n.5 .06\n1 .01\n\n0 0\n.5 -.06\n1 -.01\n999 999\n2 0\n3 0\n2.5 1\n");
+  write_text(
+      root, "pos",
+      "View \"h\" { ST(0,0,0,1,0,0,0,1,0){.1,.2,.3}; VP(0,0,0){1,2,3}; SS(0,0,0,1,0,0,0,1,0,0,0,1){1,1,1,1}; };\n"
+      "// c\nView \"g\" { TIME{0}; TT(0,0,0,1,0,0,0,1,0){1,0,0,0,1,0,0,0,1,1,0,0,0,1,0,0,0,1,1,0,0,0,1,0,0,0,1};};");
+  write_text(root, "sol",
+             "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n3\n3 1 2 3\n1 1 2 3 1 0 1 0 0 1\n"
+             "1 1 2 3 1 0 1 0 0 1\n1 1 2 3 1 0 1 0 0 1\nEnd\n");
+  write_text(root, "msh",
+             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n"
+             "7 2 2 0 1 1 2 3\n$EndElements\n$NodeData\n1\n\"h\"\n1\n0\n3\n0\n1\n3\n1 .1\n2 .2\n3 .3\n$EndNodeData\n"
+             "$ElementNodeData\n1\n\"g\"\n1\n0\n3\n0\n1\n1\n7 3 .1 .2 .3\n$EndElementNodeData\n");
   write_text(root, "off", "COFF # c\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2 9\n");
   write_text(root, "stl",
              "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");

@@ -115,7 +115,7 @@ TEST(Background, S6_same_bits_in_any_order_also_on_faces_and_nodes) {
 void expect_lower_bounds(const SizeField& field, unsigned seed, bool is_plane) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
-  const std::vector<Point> centres = random_points(2000, -0.5, 1.5, seed, is_plane);
+  const std::vector<Point> centres = random_points(500, -0.5, 1.5, seed, is_plane);
   for (const Point& c : centres) {
     const double r = std::pow(10, -3 * unit(random));
     Box box;
@@ -165,7 +165,7 @@ TEST(Background, S6_lower_bound_is_tight_inside) {
 void expect_slope(const SizeField& field, double slope, unsigned seed, bool is_plane) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
-  const std::vector<Point> from = random_points(20000, -0.5, 1.5, seed, is_plane);
+  const std::vector<Point> from = random_points(5000, -0.5, 1.5, seed, is_plane);
   std::vector<Point> to;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const double r = std::pow(10, 2 * unit(random) - 2);
