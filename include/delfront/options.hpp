@@ -139,7 +139,9 @@ struct SizeOptions {
   std::optional<double> growth;     ///< > 1; absent: 1.2, and cells no larger than the largest boundary edges
   double curvature = 0;             ///< cells per 2 pi; 0: not asked for
   double angle = 0;                 ///< degrees between neighbouring faces; 0: not asked for
+  std::string angle_form = "sine";  ///< sine, exact for inscribed faces; tangent: eq. 3.20
   std::optional<Length> deviation;  ///< of chords from the surface
+  bool automatic = false;           ///< curvature, gap and proximity with their defaults, where they are not given
   GapOptions gap;
   GapOptions proximity;  ///< of curves within a patch
   ExpressionOptions expression;

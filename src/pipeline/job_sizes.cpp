@@ -19,8 +19,9 @@ using FieldPointer = std::shared_ptr<const SizeField>;
 
 constexpr double kMuchOutside = 0.1;
 
-FieldPointer build_source_part(const Options& options, double growth, Context& context) {
+FieldPointer build_source_part(const Options& options, const Model& model, double growth, Context& context) {
   std::vector<SizeSource> sources = job_sources(options, context);
+  add_geometry_sources(options, model, sources, context);
   if (sources.empty()) return nullptr;
   return build_source_size_field(std::move(sources), {.growth = growth, .time = options.size.time}, context);
 }
@@ -100,7 +101,7 @@ FieldPointer build_job_size_field(const Options& options, const Model& model, co
   std::vector<FieldPointer> parts;
   parts.push_back(build_background_part(options, model, domain, growth, context));
   if (options.size.background.combine != "alone" || !parts[0]) {
-    parts.push_back(build_source_part(options, growth, context));
+    parts.push_back(build_source_part(options, model, growth, context));
     parts.push_back(build_expression_part(options, model, domain, growth, context));
   }
   std::erase(parts, nullptr);

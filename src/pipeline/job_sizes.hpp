@@ -13,6 +13,12 @@ namespace delfront {
 /// @throws InputError  a file of facets that cannot be read
 std::vector<SizeSource> job_sources(const Options& options, Context& context);
 
+/// @brief The sources of [size.on.NAME], size.curvature, angle, deviation, gap, proximity and automatic (S7, S9 to
+/// S11).
+/// @throws UsageError  with the place of the key
+void add_geometry_sources(const Options& options, const Model& model, std::vector<SizeSource>& sources,
+                          Context& context);
+
 /// @brief The curves and points of a planar domain as a model, for sizes on names.
 Model model_of(const PlanarDomain& domain);
 

@@ -55,6 +55,11 @@ void add_geometry_rows(std::vector<OptionRow>& t) {
   t.push_back(wish_row(
       "size.angle", "", "", "angle between neighbouring faces of curved surfaces", "degrees over 0, at most 120", 0.01,
       120, [](auto& o) -> auto& { return o.size.angle; }));
+  t.push_back(text_row("size.angle_form", "", "", "sine: exact for inscribed faces; tangent: larger for large angles",
+                       [](auto& o) -> auto& { return o.size.angle_form; }, {"sine", "tangent"}));
+  t.push_back(boolean_row(
+      "size.automatic", "curvature, gaps and lines with their defaults, where they are not given",
+      [](auto& o) -> auto& { return o.size.automatic; }));
   t.push_back(length_row(
       "size.deviation", "--hausd", "distance of edges from the curved surface that they stand for",
       [](auto& o) -> auto& { return o.size.deviation; }));

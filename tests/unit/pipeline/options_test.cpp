@@ -248,6 +248,8 @@ Options unusual_options() {
       {"size.curvature", "18"},
       {"size.angle", "12"},
       {"size.deviation", "0.01%"},
+      {"size.angle_form", "tangent"},
+      {"size.automatic", "true"},
       {"size.gap", "3"},
       {"size.gap.hmin", "1e-4"},
       {"size.proximity.cells", "2.5"},

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sizes that follow from the model: on names, from curvature, gaps and lines.
+#include <fmt/format.h>
+
+#include "delfront/errors.hpp"
+#include "delfront/geometry_sizes.hpp"
+#include "delfront/surface_check.hpp"
+#include "pipeline/job_sizes.hpp"
+#include "pipeline/option_table.hpp"
+
+namespace delfront {
+
+namespace {
+
+void report_sources(const GeometrySources& found, const std::string& key, Context& context) {
+  if (found.sources.empty()) return;
+  const GeometrySizeReport& r = found.report;
+  context.log(LogLevel::info, fmt::format("{}: sizes from {:g} (at {:g} {:g} {:g}), {} places{}", key, r.smallest,
+                                          r.smallest_at.x, r.smallest_at.y, r.smallest_at.z, r.num_sources,
+                                          r.num_at_hmin ? fmt::format(", {} of them at hmin", r.num_at_hmin) : ""));
+}
+
+/// Finds sources; what a key is refused for gets its place.
+template <class Find>
+void add_found(const Options& options, const std::string& key, std::vector<SizeSource>& sources, Context& context,
+               const Find& find) {
+  try {
+    GeometrySources found = find();
+    report_sources(found, key, context);
+    sources.insert(sources.end(), std::make_move_iterator(found.sources.begin()),
+                   std::make_move_iterator(found.sources.end()));
+  } catch (const UsageError& e) {
+    throw usage_error(options, key, e.what());
+  }
+}
+
+CurvatureSizes curvature_wish(const SizeOptions& size) {
+  CurvatureSizes wish;
+  if (size.curvature > 0) wish.cells_per_turn = size.curvature;
+  if (size.angle > 0) wish.angle_deg = size.angle;
+  if (size.deviation) wish.deviation = size.deviation->value;
+  if (size.automatic && !wish.cells_per_turn && !wish.angle_deg && !wish.deviation)
+    wish.cells_per_turn = AutomaticSizes().cells_per_turn;
+  if (size.angle_form == "tangent") wish.form = CurvatureSizes::Form::tangent;
+  if (size.hmin) wish.hmin = size.hmin->value;
+  return wish;
+}
+
+/// The side of the surface that is gridded; where it may be both, both are looked at.
+GapSizes::Side gridded_side(const DomainOptions& domain) {
+  return domain.keep.empty() && domain.keep_points.empty() ? GapSizes::Side::behind : GapSizes::Side::both;
+}
+
+GapSizes gap_wish(const Options& options, const GapOptions& asked, double usual_cells) {
+  GapSizes wish;
+  wish.cells = asked.cells > 0 ? asked.cells : usual_cells;
+  if (options.size.hmin) wish.hmin = options.size.hmin->value;
+  if (asked.hmin) wish.hmin = asked.hmin->value;
+  wish.side = gridded_side(options.domain);
+  return wish;
+}
+
+}  // namespace
+
+void add_geometry_sources(const Options& options, const Model& model, std::vector<SizeSource>& sources,
+                          Context& context) {
+  const SizeOptions& size = options.size;
+  for (const SizeOnOptions& on : size.on) {
+    const std::string key = "size.on." + toml_key(on.name);
+    if (!on.h) throw usage_error(options, key, "h is missing, the size there");
+    const NamedSize named{on.name, on.h->value};
+    add_found(options, key, sources, context, [&] { return find_named_sizes(model, {&named, 1}, context); });
+  }
+  const CurvatureSizes curvature = curvature_wish(size);
+  const bool asks_curvature = curvature.cells_per_turn || curvature.angle_deg || curvature.deviation;
+  const bool asks_gap = size.gap.cells > 0 || size.automatic;
+  const bool asks_lines = size.proximity.cells > 0 || size.automatic;
+  if (!asks_curvature && !asks_gap && !asks_lines) return;
+  const StageTimer timer(context, "sizes");
+  Model turned = model;  // sides are told by normals
+  if (!turned.triangles.empty()) orient_shells(turned, context);
+  if (asks_curvature)
+    add_found(options, "size.curvature", sources, context,
+              [&] { return find_curvature_sizes(turned, curvature, context); });
+  const AutomaticSizes usual;
+  if (asks_gap)
+    add_found(options, "size.gap", sources, context,
+              [&] { return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells.value()), context); });
+  if (asks_lines)
+    add_found(options, "size.proximity", sources, context, [&] {
+      return find_line_gap_sizes(turned, gap_wish(options, size.proximity, usual.line_cells.value()), context);
+    });
+}
+
+}  // namespace delfront
