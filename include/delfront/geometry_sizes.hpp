@@ -86,7 +86,7 @@ GeometrySources find_face_angle_sizes(const Model& grid, const FaceAngleSizes& w
 /// @brief Cells across gaps between faces (S10).
 struct GapSizes {
   double cells = 1;  ///< wanted across, > 0
-  double hmin = 0;   ///< 0: 1e-4 of the diagonal of the surface's box
+  double hmin = 0;   ///< 0: 1e-3 of the diagonal of the surface's box
   double hmax = std::numeric_limits<double>::infinity();
   enum class Side : std::uint8_t {
     behind,  ///< against the normals: the bodies that the surface encloses
@@ -115,7 +115,7 @@ struct AutomaticSizes {
   std::optional<double> gap_cells = 1;        ///< no cell flatter than the gap it lies in; more is a matter of physics
   std::optional<double> line_cells = 1;
   std::vector<NamedSize> named;
-  double hmin = 0;  ///< 0: 1e-4 of the diagonal of the surface's box
+  double hmin = 0;  ///< 0: 1e-3 of the diagonal of the surface's box
   GapSizes::Side side = GapSizes::Side::behind;
 };
 
