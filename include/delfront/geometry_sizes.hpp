@@ -31,6 +31,13 @@ struct GeometrySources {
   void append(GeometrySources&& other);
 };
 
+/// @brief Sources much smaller than their size, of sizes within 25 % in one cell of half that size, become one: a ball
+/// round them all with the least of their sizes. So no size rises anywhere; what falls does so within a size of there.
+/// Fine facets of a smooth surface are many more sources than their sizes need; the automatic sizes are merged.
+/// @return how many are gone; the report's num_sources is what is left, num_at_hmin stays what it was
+/// @par Cost  O(n log n)
+std::size_t merge_close_sources(GeometrySources& found);
+
 /// @brief A size on everything whose name fits a pattern: patches, curves, corners (S7).
 struct NamedSize {
   std::string pattern;  ///< * any letters, ? one letter; else the name
@@ -109,7 +116,7 @@ GeometrySources find_gap_sizes(const Model& model, const GapSizes& wish, Context
 /// normals.
 GeometrySources find_line_gap_sizes(const Model& model, const GapSizes& wish, Context& context);
 
-/// @brief Sizes without any input (S11).
+/// @brief Sizes without any input (S11), merged by merge_close_sources().
 struct AutomaticSizes {
   std::optional<double> cells_per_turn = 12;  ///< 30 degrees an edge: a deviation of 3.4 % of the radius
   std::optional<double> gap_cells = 1;        ///< no cell flatter than the gap it lies in; more is a matter of physics

@@ -118,6 +118,7 @@ GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& w
     gap.cells = *wish.line_cells;
     found.append(find_line_gap_sizes(model, gap, context));
   }
+  merge_close_sources(found);
   return found;
 }
 
