@@ -32,8 +32,9 @@ struct GeometrySources {
 };
 
 /// @brief Sources much smaller than their size, of sizes within 25 % in one cell of half that size, become one: a ball
-/// round them all with the least of their sizes. So no size rises anywhere; what falls does so within a size of there.
-/// Fine facets of a smooth surface are many more sources than their sizes need; the automatic sizes are merged.
+/// round them all with the least of their sizes. So do segments from one such cell to another. So no size rises
+/// anywhere; what falls does so within a size of there. Fine facets of a smooth surface are many more sources than
+/// their sizes need; the automatic sizes are merged.
 /// @return how many are gone; the report's num_sources is what is left, num_at_hmin stays what it was
 /// @par Cost  O(n log n)
 std::size_t merge_close_sources(GeometrySources& found);

@@ -7,6 +7,7 @@
 #include "delfront/errors.hpp"
 #include "delfront/geometry_sizes.hpp"
 #include "geometry_fixtures.hpp"
+#include "spatial/bvh.hpp"
 #include "support/support.hpp"
 
 namespace delfront {
@@ -278,6 +279,30 @@ TEST(MergeSources, S11_no_size_rises_and_few_are_left) {
   EXPECT_EQ(merge_close_sources(scaled), gone);
   for (std::size_t i = 0; i < merged.sources.size(); ++i)
     EXPECT_EQ(scaled.sources[i].law.r0, 0.125 * merged.sources[i].law.r0);
+}
+
+TEST(MergeSources, S11_segments_across_a_gap) {
+  Context context;
+  SurfaceBuilder builder;
+  fixtures::add_sphere(builder, 1, 120, 60, 0);
+  fixtures::add_sphere(builder, 0.8, 120, 60, 0, true);
+  const GeometrySources plain = find_gap_sizes(builder.model(), cells(1), context);
+  GeometrySources merged = plain;
+  merge_close_sources(merged);
+  EXPECT_LT(merged.sources.size(), plain.sources.size() / 3);
+  for (std::size_t i = 0; i < plain.sources.size(); i += 997) {
+    const Simplex& old = std::get<Simplex>(plain.sources[i].shape);
+    for (const double t : {0.0, 0.3, 0.5, 1.0}) {
+      const Point at = old.corner[0] + t * (old.corner[1] - old.corner[0]);
+      double size = 1e300;
+      for (const SizeSource& source : merged.sources) {
+        const Simplex& shape = std::get<Simplex>(source.shape);
+        const double d = length(nearest_point_on_triangle(at, shape.corner[0], shape.corner[1], shape.corner[2]) - at);
+        if (d <= source.law.r0 + 1e-12) size = std::min(size, source.law.delta0);
+      }
+      EXPECT_LE(size, plain.sources[i].law.delta0);
+    }
+  }
 }
 
 TEST(GapSizes, S10_same_when_turned) {
