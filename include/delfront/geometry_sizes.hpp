@@ -31,6 +31,14 @@ struct GeometrySources {
   void append(GeometrySources&& other);
 };
 
+/// @brief Sources much smaller than their size, of sizes within 25 % in one cell of half that size, become one: a ball
+/// round them all with the least of their sizes. So do segments from one such cell to another. So no size rises
+/// anywhere; what falls does so within a size of there. Fine facets of a smooth surface are many more sources than
+/// their sizes need; the automatic sizes are merged.
+/// @return how many are gone; the report's num_sources is what is left, num_at_hmin stays what it was
+/// @par Cost  O(n log n)
+std::size_t merge_close_sources(GeometrySources& found);
+
 /// @brief A size on everything whose name fits a pattern: patches, curves, corners (S7).
 struct NamedSize {
   std::string pattern;  ///< * any letters, ? one letter; else the name
@@ -86,7 +94,7 @@ GeometrySources find_face_angle_sizes(const Model& grid, const FaceAngleSizes& w
 /// @brief Cells across gaps between faces (S10).
 struct GapSizes {
   double cells = 1;  ///< wanted across, > 0
-  double hmin = 0;   ///< 0: 1e-4 of the diagonal of the surface's box
+  double hmin = 0;   ///< 0: 1e-3 of the diagonal of the surface's box
   double hmax = std::numeric_limits<double>::infinity();
   enum class Side : std::uint8_t {
     behind,  ///< against the normals: the bodies that the surface encloses
@@ -109,13 +117,13 @@ GeometrySources find_gap_sizes(const Model& model, const GapSizes& wish, Context
 /// normals.
 GeometrySources find_line_gap_sizes(const Model& model, const GapSizes& wish, Context& context);
 
-/// @brief Sizes without any input (S11).
+/// @brief Sizes without any input (S11), merged by merge_close_sources().
 struct AutomaticSizes {
   std::optional<double> cells_per_turn = 12;  ///< 30 degrees an edge: a deviation of 3.4 % of the radius
   std::optional<double> gap_cells = 1;        ///< no cell flatter than the gap it lies in; more is a matter of physics
   std::optional<double> line_cells = 1;
   std::vector<NamedSize> named;
-  double hmin = 0;  ///< 0: 1e-4 of the diagonal of the surface's box
+  double hmin = 0;  ///< 0: 1e-3 of the diagonal of the surface's box
   GapSizes::Side side = GapSizes::Side::behind;
 };
 

@@ -23,9 +23,10 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTilt = 30 * kPi / 180;
 constexpr int kTilted = 6;
-constexpr double kEvenWidth = 1.5;  // gaps within this ratio count as one width
-constexpr int kMostCuts = 14;       // of one triangle, one after the other: 2^14 pieces
-constexpr double kInset = 0.05;     // of places near corners and sides, from them towards the middle
+constexpr double kEvenWidth = 1.5;     // gaps within this ratio count as one width
+constexpr int kMostCuts = 14;          // of one triangle, one after the other: 2^14 pieces
+constexpr double kShortPiece = 0.005;  // of the diagonal: no shorter ones are cut, which bounds their number
+constexpr double kInset = 0.05;        // of places near corners and sides, from them towards the middle
 
 void check_gap(const char* word, const GapSizes& wish) {
   check_bounds(word, wish.hmin, wish.hmax);
@@ -47,6 +48,7 @@ class GapFinder {
         cells_(wish.cells),
         hmin_(usual_hmin(facets, wish.hmin)),
         largest_(std::min(wish.hmax * wish.cells, facets.diagonal())),
+        shortest_(kShortPiece * facets.diagonal()),
         cos_facing_(std::cos(wish.facing_deg * kPi / 180)) {
     std::vector<std::array<Point, 3>> corners(facets.num_triangles());
     for (std::size_t t = 0; t < corners.size(); ++t) corners[t] = facets.corners(t);
@@ -85,43 +87,54 @@ class GapFinder {
     return best;
   }
 
+  /// What a piece sees: the nearest from all its places, and the farthest of what each place sees nearest.
+  struct Sight {
+    Opposite nearest;
+    Point from;
+    double most = 0;
+  };
+
+  Sight look_from(std::uint32_t triangle, double sign, const std::array<Point, 3>& p, double length) const {
+    const Point middle = (p[0] + p[1] + p[2]) / 3;
+    Sight sight{from_place(triangle, sign, middle), middle, 0};
+    sight.most = sight.nearest.distance;
+    if (length <= std::max(sight.nearest.distance, sight.nearest.distance < largest_ ? 0 : shortest_)) return sight;
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Point edge = k < 3 ? p[k] : 0.5 * (p[k - 3] + p[(k - 2) % 3]);
+      const Point from = (1 - kInset) * edge + kInset * middle;
+      const Opposite seen = from_place(triangle, sign, from);
+      sight.most = std::max(sight.most, seen.distance);
+      if (seen.distance < sight.nearest.distance) {
+        sight.nearest = seen;
+        sight.from = from;
+      }
+    }
+    return sight;
+  }
+
   void look(std::uint32_t triangle, double sign, const std::array<Point, 3>& p, int cuts,
             GeometrySources& found) const {
-    const Point middle = (p[0] + p[1] + p[2]) / 3;
-    std::array<Opposite, 7> seen;
-    std::array<Point, 7> place;
-    place[0] = middle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      place[1 + k] = (1 - kInset) * p[k] + kInset * middle;
-      place[4 + k] = (1 - kInset) * (0.5 * (p[k] + p[(k + 1) % 3])) + kInset * middle;
-    }
-    double least = kInfinity, most = 0;
-    std::size_t nearest = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      seen[i] = from_place(triangle, sign, place[i]);
-      if (seen[i].distance < least) nearest = i;
-      least = std::min(least, seen[i].distance);
-      most = std::max(most, seen[i].distance);
-    }
-    if (!(least < largest_)) return;
     std::size_t longest = 0;
     for (std::size_t k = 1; k < 3; ++k)
       if (distance(p[k], p[(k + 1) % 3]) > distance(p[longest], p[(longest + 1) % 3])) longest = k;
     const double length = distance(p[longest], p[(longest + 1) % 3]);
-    const bool is_even = most <= kEvenWidth * least || most <= hmin_ * cells_;
-    if (!is_even && cuts < kMostCuts && length > std::max(least, hmin_ * cells_)) {
+    const Sight sight = look_from(triangle, sign, p, length);
+    const double least = sight.nearest.distance;
+    if (!(least < largest_)) return;
+    const bool is_even = sight.most <= kEvenWidth * least || sight.most <= hmin_ * cells_;
+    if (!is_even && cuts < kMostCuts && length > std::max({least, hmin_ * cells_, shortest_})) {
       const Point cut = 0.5 * (p[longest] + p[(longest + 1) % 3]), apex = p[(longest + 2) % 3];
       look(triangle, sign, {p[longest], cut, apex}, cuts + 1, found);
       look(triangle, sign, {cut, p[(longest + 1) % 3], apex}, cuts + 1, found);
       return;
     }
     add_source(found, simplex(p), least / cells_, hmin_, "gap");
-    add_source(found, simplex(place[nearest], seen[nearest].at), least / cells_, hmin_, "gap");
+    add_source(found, simplex(sight.from, sight.nearest.at), least / cells_, hmin_, "gap");
   }
 
   const Facets& facets_;
   TriangleTree tree_;
-  double cells_, hmin_, largest_, cos_facing_;
+  double cells_, hmin_, largest_, shortest_, cos_facing_;
 };
 
 /// Lines across a patch, from one side of one edge.

@@ -99,7 +99,7 @@ GeometrySources find_named_sizes(const Model& model, std::span<const NamedSize> 
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context) {
   check_bounds("automatic sizes", wish.hmin, std::numeric_limits<double>::infinity());
   GeometrySources found = find_named_sizes(model, wish.named, context);
-  constexpr double kUsualShare = 1e-4;
+  constexpr double kUsualShare = 1e-3;
   const double hmin = wish.hmin > 0 ? wish.hmin : kUsualShare * model.surface_box().diagonal();
   if (wish.cells_per_turn) {
     CurvatureSizes curvature;
@@ -118,6 +118,7 @@ GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& w
     gap.cells = *wish.line_cells;
     found.append(find_line_gap_sizes(model, gap, context));
   }
+  merge_close_sources(found);
   return found;
 }
 

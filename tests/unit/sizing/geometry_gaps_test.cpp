@@ -7,6 +7,7 @@
 #include "delfront/errors.hpp"
 #include "delfront/geometry_sizes.hpp"
 #include "geometry_fixtures.hpp"
+#include "spatial/bvh.hpp"
 #include "support/support.hpp"
 
 namespace delfront {
@@ -243,6 +244,78 @@ TEST(LineGapSizes, S10_corners_are_no_gaps) {
   const Range range = range_of(find_line_gap_sizes(model, cells(1), context), 2);
   EXPECT_NEAR(range.low, 1, 1e-12);
   EXPECT_NEAR(range.high, 1, 1e-12);
+}
+
+TEST(MergeSources, S11_no_size_rises_and_few_are_left) {
+  Context context;
+  SurfaceBuilder builder;
+  fixtures::add_sphere(builder, 1, 160, 80, 0);
+  CurvatureSizes wish;
+  wish.cells_per_turn = 12;
+  const GeometrySources plain = find_curvature_sizes(builder.model(), wish, context);
+  GeometrySources merged = plain;
+  const std::size_t gone = merge_close_sources(merged);
+  EXPECT_EQ(merged.sources.size() + gone, plain.sources.size());
+  EXPECT_LT(merged.sources.size(), plain.sources.size() / 20);
+  EXPECT_EQ(merged.report.num_sources, merged.sources.size());
+  for (std::size_t i = 0; i < plain.sources.size(); i += 37)
+    for (const Point& corner : std::get<Simplex>(plain.sources[i].shape).corner) {
+      double size = 1e300;
+      for (const SizeSource& source : merged.sources) {
+        const Simplex& shape = std::get<Simplex>(source.shape);
+        const bool is_inside = shape.num_corners == 1 && distance(corner, shape.corner[0]) <= source.law.r0;
+        const bool is_corner = corner == shape.corner[0] || corner == shape.corner[1] || corner == shape.corner[2];
+        if (is_inside || is_corner) size = std::min(size, source.law.delta0);
+      }
+      EXPECT_LE(size, plain.sources[i].law.delta0);
+      EXPECT_GE(size, 0.75 * plain.sources[i].law.delta0);
+    }
+  // the same under powers of two
+  GeometrySources scaled = plain;
+  for (SizeSource& source : scaled.sources) {
+    source.law.delta0 *= 0.125;
+    for (Point& p : std::get<Simplex>(source.shape).corner) p = 0.125 * p;
+  }
+  EXPECT_EQ(merge_close_sources(scaled), gone);
+  for (std::size_t i = 0; i < merged.sources.size(); ++i)
+    EXPECT_EQ(scaled.sources[i].law.r0, 0.125 * merged.sources[i].law.r0);
+}
+
+TEST(MergeSources, S11_segments_across_a_gap) {
+  Context context;
+  SurfaceBuilder builder;
+  fixtures::add_sphere(builder, 1, 120, 60, 0);
+  fixtures::add_sphere(builder, 0.8, 120, 60, 0, true);
+  const GeometrySources plain = find_gap_sizes(builder.model(), cells(1), context);
+  GeometrySources merged = plain;
+  merge_close_sources(merged);
+  EXPECT_LT(merged.sources.size(), plain.sources.size() / 3);
+  for (std::size_t i = 0; i < plain.sources.size(); i += 997) {
+    const Simplex& old = std::get<Simplex>(plain.sources[i].shape);
+    for (const double t : {0.0, 0.3, 0.5, 1.0}) {
+      const Point at = old.corner[0] + t * (old.corner[1] - old.corner[0]);
+      double size = 1e300;
+      for (const SizeSource& source : merged.sources) {
+        const Simplex& shape = std::get<Simplex>(source.shape);
+        const double d = length(nearest_point_on_triangle(at, shape.corner[0], shape.corner[1], shape.corner[2]) - at);
+        if (d <= source.law.r0 + 1e-12) size = std::min(size, source.law.delta0);
+      }
+      EXPECT_LE(size, plain.sources[i].law.delta0);
+    }
+  }
+}
+
+TEST(GapSizes, S10_same_when_turned) {
+  Context context;
+  SurfaceBuilder builder;
+  builder.box({-4, -4, -4}, {4, 4, 4}, "box");
+  builder.box({-1, -1, 0}, {1, 1, 0.5}, "lower", true);
+  builder.box({-1, -1, 0.55}, {1, 1, 1}, "upper", true);
+  Model model = builder.model();
+  const double plain = find_gap_sizes(model, cells(2), context).report.smallest;
+  for (Point& p : model.points)
+    p = 1e6 * Point{0.6 * p.x - 0.8 * p.y, 0.48 * p.x + 0.36 * p.y - 0.8 * p.z, 0.64 * p.x + 0.48 * p.y + 0.6 * p.z};
+  EXPECT_NEAR(find_gap_sizes(model, cells(2), context).report.smallest, 1e6 * plain, 1e-3 * 1e6 * plain);
 }
 
 TEST(AutomaticSizes, S11_puts_all_together) {
