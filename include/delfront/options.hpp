@@ -187,6 +187,7 @@ struct OutputOptions {
   std::string require;      ///< gates
   bool ascii = false;       ///< text instead of binary, where a format has both
   bool compress = false;    ///< VTK XML: zlib
+  bool sizes = false;       ///< the wanted size at each point, as the field "h"
   std::string msh_version;  ///< "", "2.2" or "4.1"
 };
 

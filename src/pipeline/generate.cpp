@@ -8,6 +8,7 @@
 
 #include "improve/improve.hpp"
 #include "pipeline/prepare.hpp"
+#include "sizing/asked_sizes.hpp"
 #include "volume/refine.hpp"
 #include "volume/to_mesh.hpp"
 
@@ -32,9 +33,10 @@ Outcome generate(Model model, const Options& options, Context& context, std::sha
   report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();
   if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
-  size.reset();
+  if (!options.output.sizes) size.reset();
   give_back_free_memory();
   outcome.mesh = to_mesh(std::move(grid), model, context.threads);
+  if (size) add_size_field(outcome.mesh, *size);
   give_back_free_memory();
   const StageTimer timer(context, "measure");
   report.quality = measure_quality(outcome.mesh, context);

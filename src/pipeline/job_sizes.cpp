@@ -112,9 +112,15 @@ FieldPointer build_job_size_field(const Options& options, const Model& model, co
 Model model_of(const PlanarDomain& domain) {
   Model model;
   for (const Point2 p : domain.points) model.points.push_back({p.x, p.y, 0});
-  for (std::size_t i = 0; i < domain.segments.size(); ++i)
-    model.curves.push_back(
-        {domain.curves[domain.curve_of_segment[i]].name, {domain.segments[i][0], domain.segments[i][1]}});
+  for (std::size_t i = 0; i < domain.segments.size(); ++i) {  // those that follow each other are one chain
+    const auto [a, b] = domain.segments[i];
+    const bool goes_on = i > 0 && domain.curve_of_segment[i] == domain.curve_of_segment[i - 1] &&
+                         model.curves.back().vertices.back() == a;
+    if (goes_on)
+      model.curves.back().vertices.push_back(b);
+    else
+      model.curves.push_back({domain.curves[domain.curve_of_segment[i]].name, {a, b}});
+  }
   return model;
 }
 

@@ -18,6 +18,9 @@ namespace {
 constexpr double kCellsPerVolume = 8.48528137423857;  ///< 6 sqrt(2)
 constexpr double kCellsPerArea = 2.3094010767585034;  ///< 4 / sqrt(3)
 constexpr double kCellsPerPoint = 5.6, kTrianglesPerPoint = 2;
+// More than a filling with regular tetrahedra would have: where sizes vary cells are less regular, and cells that end
+// at the border are cut off ones. Fitted to grids of 7e4 to 4e6 cells (bodies, a ship, examples/sizes), all within 8 %.
+constexpr double kIrregular = 1.04, kPerBorderTriangle = 1.2, kPerBorderSegment = 0.8;
 constexpr double kBorderWidth = 1.5;  ///< sizes; boxes on the border are halved until they are narrower
 constexpr std::size_t kGrain = 1 << 6;
 constexpr int kMaxHalvings = 12;
@@ -178,14 +181,17 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context&
   Estimate estimate;
   const bool is_planar = domain.is_planar();
   estimate.measure = all.measure;
-  estimate.cells = all.cells;
-  estimate.points = all.cells / (is_planar ? kTrianglesPerPoint : kCellsPerPoint);
+  const auto border = static_cast<double>(domain.num_border());
+  const double cells =
+      is_planar ? all.cells + kPerBorderSegment * border : kIrregular * all.cells + kPerBorderTriangle * border;
+  estimate.cells = cells;
+  estimate.points = cells / (is_planar ? kTrianglesPerPoint : kCellsPerPoint);
   estimate.least_size = all.least;
   estimate.greatest_size = all.greatest;
-  estimate.memory = kBytesAtStart + all.cells * (is_planar ? kBytesPerTriangle : kBytesPerTet);
+  estimate.memory = kBytesAtStart + cells * (is_planar ? kBytesPerTriangle : kBytesPerTet);
   const double per_cell =
       is_planar ? kSecondsPerTriangle : kSecondsPerTet + kSecondsPerTetAndThread / std::max(1, context.threads);
-  estimate.seconds = context.seconds_since_start() + all.cells * per_cell;
+  estimate.seconds = context.seconds_since_start() + cells * per_cell;
   estimate.is_at_least = octree.is_cut_short();
   return estimate;
 }

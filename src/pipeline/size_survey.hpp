@@ -22,6 +22,7 @@ class KeptDomain {
 
   bool is_planar() const { return is_planar_; }
   const Box& box() const { return box_; }
+  std::size_t num_border() const { return border_.size(); }  ///< triangles of the border; in the plane segments
   bool is_crossed(const Box& box) const;
   bool is_inside(Point p) const;
 

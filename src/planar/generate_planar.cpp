@@ -162,6 +162,7 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
     grid.complex.index_vertices();
   report.warnings = grid.warnings;
   outcome.mesh = to_mesh(grid, domain);
+  if (options.output.sizes) add_size_field(outcome.mesh, *size);
   grid = {};
   const StageTimer timer(context, "measure");
   report.quality = measure_quality(outcome.mesh, context);

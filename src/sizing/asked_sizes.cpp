@@ -27,6 +27,12 @@ std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const 
   return build_boundary_size_field(boundary, context);
 }
 
+void add_size_field(Mesh& mesh, const SizeField& size) {
+  Field h{"h", Field::On::vertices, CellType::vertex, 1, std::vector<double>(mesh.points.size())};
+  size.sizes(mesh.points, h.values);
+  mesh.fields.push_back(std::move(h));
+}
+
 std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,
                                                     std::shared_ptr<const SizeField> asked,
                                                     const SizeOptions& options) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "delfront/mesh.hpp"
 #include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
 
@@ -25,6 +26,9 @@ bool has_field_everywhere(const SizeOptions& options);
 /// @param largest   of the boundary as it was given
 std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,
                                                   Context& context);
+
+/// @brief The wanted sizes at the points of a grid, as its field "h".
+void add_size_field(Mesh& mesh, const SizeField& size);
 
 /// @brief The lesser of both, clamped to the options' hmin and hmax.
 std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,

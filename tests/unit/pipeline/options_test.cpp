@@ -286,6 +286,7 @@ Options unusual_options() {
       {"output.units", "mm"},
       {"output.ascii", "true"},
       {"output.compress", "true"},
+      {"output.sizes", "true"},
       {"output.msh_version", "2.2"},
       {"output.report", "/r.json"},
       {"output.defects", "/d.vtp"},

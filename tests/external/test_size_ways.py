@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every way to ask for sizes, with every method there is: valid by the independent checker, edges as long as asked.
+
+    test_size_ways.py DELFRONT [NAME]
+
+The table is the folder examples/sizes: one job file a row, gridded in the volume and, with the section in place of the
+room, in the plane. Of the edges that do not lie on a kept surface 99 % are 0.5 to 2 times as long as the field asks at
+their middles (the mean of both ends); the estimate is within 15 % of the cells. Prints one line a grid.
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+import meshio
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+EXAMPLES = os.path.join(HERE, "..", "..", "examples", "sizes")
+KINDS = {"tetra": [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)], "triangle": [(0, 1), (1, 2), (2, 0)],
+         "line": [(0, 1)]}
+NOT_IN_THE_PLANE = {  # each with its reason
+    "s09_curvature": "curvature is that of surfaces",
+    "s10_gaps": "gaps are those between faces",
+    "s11_together": "as s09 and s10",
+}
+
+
+def edges_of(mesh, kind):
+    cells = [block.data for block in mesh.cells if block.type == kind]
+    if not cells:
+        return np.empty((0, 2), int)
+    cells = np.concatenate(cells)
+    return np.unique(np.sort(np.concatenate([cells[:, list(pair)] for pair in KINDS[kind]]), 1), axis=0)
+
+
+def share_of_good_edges(path, dimension):
+    mesh = meshio.read(path)
+    edges = edges_of(mesh, "tetra" if dimension == 3 else "triangle")
+    kept = edges_of(mesh, "triangle" if dimension == 3 else "line")
+    n = len(mesh.points)
+    edges = edges[~np.isin(edges[:, 0] * n + edges[:, 1], kept[:, 0] * n + kept[:, 1])]
+    h = mesh.point_data["h"].ravel()
+    length = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
+    ratio = length / (0.5 * (h[edges[:, 0]] + h[edges[:, 1]]))
+    return np.mean((ratio >= 0.5) & (ratio <= 2)), np.percentile(ratio, [1, 50, 99])
+
+
+def run(command, folder):
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def check_grid(delfront, folder, name, dimension):
+    """One row of the table. Returns what is wrong."""
+    out, report, guess = f"{name}_{dimension}.vtu", f"{name}_{dimension}.json", f"{name}_{dimension}_estimate.json"
+    job = [f"{name}.toml", "--set", "output.sizes=true"]
+    if dimension == 2:
+        job += ["--set", "input.files=section.poly", "--set", "planar.boundary=split",
+                "--set", "boundaries.ball.select=patch_2", "--set", "boundaries.walls.select=patch_1"]
+        with open(os.path.join(folder, f"{name}.toml"), encoding="utf-8") as file:
+            text = file.read()
+        for key in ("background", "solution"):
+            match = re.search(rf"{key}.*?file = \"(\w+)\.vtu\"", text, re.S)
+            if match and key in text:
+                job += ["--set", f"size.{key}.file={match[1]}_2d.vtu"]
+    code, said = run([delfront, "mesh", *job, "-o", out, "--report", report, "-j", "2"], folder)
+    if code != 0:
+        return [f"exit {code}: {said.strip()}"]
+    wrong = []
+    checker = [sys.executable, os.path.join(HERE, "run_checker.py"), out]
+    if dimension == 3:
+        checker += ["--surface", "room.stl", "--keep-surface"]
+    code, said = run(checker, folder)
+    if code == 77:
+        print(said.strip())
+    elif code != 0:
+        wrong.append(f"check_mesh.py: {said.strip()[-600:]}")
+    share, spread = share_of_good_edges(os.path.join(folder, out), dimension)
+    if share < 0.99:
+        wrong.append(f"only {100 * share:.2f} % of the edges are as long as asked")
+    code, said = run([delfront, "estimate", *job, "--report", guess, "-j", "2"], folder)
+    if code != 0:
+        return [*wrong, f"estimate: exit {code}: {said.strip()}"]
+    with open(os.path.join(folder, guess), encoding="utf-8") as file:
+        estimate = json.load(file)["estimate"]["cells"]
+    with open(os.path.join(folder, report), encoding="utf-8") as file:
+        cells = json.load(file)["quality"]["num_cells"]
+    if abs(estimate / cells - 1) > 0.15:
+        wrong.append(f"estimate {estimate:.0f} of {cells} cells")
+    print(f"{name:16} {dimension}-D {cells:9d} cells, estimate {estimate / cells:.3f}, edges {100 * share:.3f} % good, "
+          f"1 50 99 % at {spread[0]:.2f} {spread[1]:.2f} {spread[2]:.2f}", flush=True)
+    return wrong
+
+
+def main():
+    delfront, only = os.path.abspath(sys.argv[1]), sys.argv[2:]
+    failed = 0
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, os.path.join(EXAMPLES, "make_inputs.py"), folder], check=True)
+        names = sorted(f[:-5] for f in os.listdir(EXAMPLES) if f.endswith(".toml"))
+        for name in names:
+            if only and name not in only:
+                continue
+            with open(os.path.join(EXAMPLES, f"{name}.toml"), encoding="utf-8") as job:
+                text = job.read()
+            with open(os.path.join(folder, f"{name}.toml"), "w", encoding="utf-8") as copy:
+                copy.write(text)
+            for dimension in (3, 2):
+                if dimension == 2 and name in NOT_IN_THE_PLANE:
+                    print(f"{name:16} 2-D not tried: {NOT_IN_THE_PLANE[name]}")
+                    continue
+                for reason in check_grid(delfront, folder, name, dimension):
+                    print(f"{name} {dimension}-D FAILED: {reason}", flush=True)
+                    failed += 1
+    print(f"{failed} failed")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
