@@ -5,14 +5,15 @@
 //
 // Points lie in the unit cube in Hilbert order; sources are points, segments and triangles of all three laws, scattered
 // in the cube, along curves, or on surfaces. One line a case: layout, sources, method, build seconds, million
-// evaluations a second (median), and the sum of all sizes, which must not depend on the method.
+// evaluations a second (median; of this process's own
+// time on one core), and the sum of all sizes, which must not depend on the method.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -105,9 +106,9 @@ std::vector<Point> make_points(std::size_t n) {
 }
 
 double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 void run_case(const std::string& layout, std::size_t n, bool is_tree, std::size_t num_points, int repeat) {

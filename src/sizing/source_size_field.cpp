@@ -33,7 +33,7 @@ class SourceSizeField final : public SizeField {
 
  private:
   struct Hints {
-    std::uint32_t plain = SourceTree::kNone, greatest = SourceTree::kNone;
+    SourceTree::Hint plain, greatest;
   };
   double plain_size(Point at, Hints& hints) const;
   Metric metric_at(Point at, Hints& hints) const;
@@ -80,13 +80,13 @@ SourceSizeField::SourceSizeField(const std::vector<SizeSource>& sources, const S
 
 double SourceSizeField::plain_size(Point at, Hints& hints) const {
   if (plain_.empty()) return kInfinity;
-  return is_scanned_ ? plain_.least_by_scan(at) : plain_.least(at, kInfinity, hints.plain);
+  return is_scanned_ ? plain_.least_by_scan(at) : plain_.least(at, hints.plain);
 }
 
 Metric SourceSizeField::metric_at(Point at, Hints& hints) const {
   const double plain = plain_size(at, hints);
   Metric metric = isotropic_metric(plain);
-  const double bound = std::min(plain, greatest_.least(at, kInfinity, hints.greatest));
+  const double bound = std::min(plain, greatest_.least(at, hints.greatest));
   // Infinite: whatever is finite counts.
   for (const std::uint32_t i : least_.below({at, at}, bound)) {
     const double delta = stretched_[i](at);
@@ -99,6 +99,7 @@ Metric SourceSizeField::metric_at(Point at, Hints& hints) const {
 
 void SourceSizeField::sizes(std::span<const Point> at, std::span<double> size) const {
   DELFRONT_CHECK(at.size() == size.size());
+  if (is_isotropic() && !is_scanned_) return plain_.least(at, size);
   Hints hints;
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (is_isotropic()) {

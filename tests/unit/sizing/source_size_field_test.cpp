@@ -102,6 +102,23 @@ TEST(SourceSizeField, S5_search_and_order_change_no_bit) {
   }
 }
 
+TEST(SourceSizeField, S5_runs_of_near_places_change_no_bit) {
+  Random random;
+  for (const int n : {3, 40, 4000})
+    for (const double growth : {kInfinity, 1.2}) {
+      const std::vector<SizeSource> sources = random_sources(n, Kinds::all, random);
+      const auto tree = build(sources, growth), scan = build(sources, growth, SourceSearch::scan);
+      for (const double step : {1e-9, 1e-3, 0.03, 1.0}) {
+        std::vector<Point> at = {random.point(1)};
+        while (at.size() < 400) at.push_back(at.back() + step * random.point(1));
+        std::vector<double> size(at.size()), again(at.size());
+        tree->sizes(at, size);
+        scan->sizes(at, again);
+        ASSERT_EQ(size, again) << "seed " << kSeed << " n " << n << " step " << step;
+      }
+    }
+}
+
 TEST(SourceSizeField, S5_clusters_of_many_scales_and_equal_sources) {
   Random random;
   std::vector<SizeSource> sources = random_sources(500, Kinds::simplices, random);
