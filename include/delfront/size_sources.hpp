@@ -87,8 +87,8 @@ struct Motion {
   Point centre, axis;       ///< axis of any length; zero: no turning
   double degrees_rate = 0;  ///< degrees a time unit, right-handed about the axis
 
-  Point at(double time, Point point) const;             ///< where a point of the body is
-  Point turned(double time, Point direction) const;     ///< where a direction of the body points to
+  Point at(double time, Point point) const;          ///< where a point of the body is
+  Point turned(double time, Point direction) const;  ///< where a direction of the body points to
 };
 
 struct SizeSource {
@@ -112,7 +112,7 @@ struct SourceFieldOptions {
   /// Sizes rise with the distance from any place by at most (growth - 1) / growth: laws that rise faster are cut to
   /// that (neighbours then keep the growth). Infinity: laws as they are.
   double growth = std::numeric_limits<double>::infinity();
-  double time = 0;  ///< for sources that move
+  double time = 0;                                ///< for sources that move
   SourceSearch search = SourceSearch::automatic;  ///< changes the time, never a bit of a result
 };
 

@@ -30,17 +30,17 @@ void check_closed(const std::vector<std::array<Point, 3>>& triangles) {
       if (is_before(edge[1], edge[0])) std::swap(edge[0], edge[1]);
       edges.push_back(edge);
     }
-  std::sort(edges.begin(), edges.end(), [](const auto& e, const auto& f) {
-    return e[0] == f[0] ? is_before(e[1], f[1]) : is_before(e[0], f[0]);
-  });
+  std::sort(edges.begin(), edges.end(),
+            [](const auto& e, const auto& f) { return e[0] == f[0] ? is_before(e[1], f[1]) : is_before(e[0], f[0]); });
   for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
     while (j < edges.size() && edges[j] == edges[i]) ++j;
     if ((j - i) % 2 == 0) continue;
     const Point p = edges[i][0], q = edges[i][1];
-    throw InputError(fmt::format("surface of a region: {} triangle(s) at the edge ({}, {}, {}) to ({}, {}, {}); it must "
-                                 "be closed to have an inside: mend it, or take it as a source",
-                                 j - i, p.x, p.y, p.z, q.x, q.y, q.z),
-                     {{0.5 * (p + q), {}}});
+    throw InputError(
+        fmt::format("surface of a region: {} triangle(s) at the edge ({}, {}, {}) to ({}, {}, {}); it must "
+                    "be closed to have an inside: mend it, or take it as a source",
+                    j - i, p.x, p.y, p.z, q.x, q.y, q.z),
+        {{0.5 * (p + q), {}}});
   }
 }
 

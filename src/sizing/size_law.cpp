@@ -86,10 +86,14 @@ void check_polynomial(const SizeLaw& law) {
 
 std::string name_of(SizeLaw::Kind kind) {
   switch (kind) {
-    case SizeLaw::Kind::step: return "step";
-    case SizeLaw::Kind::power: return "power";
-    case SizeLaw::Kind::exponential: return "exponential";
-    case SizeLaw::Kind::polynomial: return "polynomial";
+    case SizeLaw::Kind::step:
+      return "step";
+    case SizeLaw::Kind::power:
+      return "power";
+    case SizeLaw::Kind::exponential:
+      return "exponential";
+    case SizeLaw::Kind::polynomial:
+      return "polynomial";
   }
   return "unknown";
 }
@@ -119,10 +123,14 @@ std::vector<double> positive_roots(std::vector<double> c) {
 double SizeLaw::size_at(double r) const {
   const double rho = relative_distance(*this, r);
   switch (kind) {
-    case Kind::step: return r <= r0 ? delta0 : kInfinity;
-    case Kind::power: return delta0 * (1 + power(rho, gamma));
-    case Kind::exponential: return delta0 * std::exp(gamma * rho);
-    case Kind::polynomial: break;
+    case Kind::step:
+      return r <= r0 ? delta0 : kInfinity;
+    case Kind::power:
+      return delta0 * (1 + power(rho, gamma));
+    case Kind::exponential:
+      return delta0 * std::exp(gamma * rho);
+    case Kind::polynomial:
+      break;
   }
   double sum = 0;
   for (std::size_t i = polynomial.size(); i-- > 0;)
@@ -152,7 +160,9 @@ LimitedLaw::LimitedLaw(const SizeLaw& law, double slope) : law_(law), slope_(slo
   };
   const double g = law.gamma, steep = slope * law.r1 / law.delta0;  // the slope in units of delta0 and r1
   switch (law.kind) {
-    case SizeLaw::Kind::step: add_line(law.r0, kInfinity); return;
+    case SizeLaw::Kind::step:
+      add_line(law.r0, kInfinity);
+      return;
     case SizeLaw::Kind::power:
       if (g == 1) {
         if (steep < 1) add_line(law.r0, kInfinity);
@@ -165,7 +175,9 @@ LimitedLaw::LimitedLaw(const SizeLaw& law, double slope) : law_(law), slope_(slo
     case SizeLaw::Kind::exponential:
       add_line(law.r0 + law.r1 * std::max(0.0, std::log(steep / g) / g), kInfinity);
       return;
-    case SizeLaw::Kind::polynomial: limit_polynomial(); return;
+    case SizeLaw::Kind::polynomial:
+      limit_polynomial();
+      return;
   }
 }
 
@@ -229,10 +241,14 @@ double LimitedLaw::largest() const {
 double LimitedLaw::inverse(double size) const {
   const double excess = size / law_.delta0 - 1;
   switch (law_.kind) {
-    case SizeLaw::Kind::step: return law_.r0;
-    case SizeLaw::Kind::power: return law_.r0 + law_.r1 * std::pow(excess, 1 / law_.gamma);
-    case SizeLaw::Kind::exponential: return law_.r0 + law_.r1 * (std::log1p(excess) / law_.gamma);
-    case SizeLaw::Kind::polynomial: break;
+    case SizeLaw::Kind::step:
+      return law_.r0;
+    case SizeLaw::Kind::power:
+      return law_.r0 + law_.r1 * std::pow(excess, 1 / law_.gamma);
+    case SizeLaw::Kind::exponential:
+      return law_.r0 + law_.r1 * (std::log1p(excess) / law_.gamma);
+    case SizeLaw::Kind::polynomial:
+      break;
   }
   const std::vector<double> c = with_one(law_);
   if (c.size() == 1) return kInfinity;

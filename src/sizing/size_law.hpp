@@ -6,7 +6,8 @@
 
 namespace delfront {
 
-/// @brief The largest function below a law whose slope is nowhere above k: g(d) = min over d' <= d of f(d') + k (d - d').
+/// @brief The largest function below a law whose slope is nowhere above k: g(d) = min over d' <= d of f(d') + k (d -
+/// d').
 ///
 /// Distances to a closed set have slope 1 (along the line to the nearest place), so that g(distance) is the largest
 /// field of slope k below f(distance). With k infinite g = f. Monotone and, for finite k, continuous.
@@ -32,8 +33,8 @@ class LimitedLaw {
   double inverse(double size) const;
 
   SizeLaw law_;
-  double slope_ = 0;                     ///< infinite: no limit
-  std::vector<double> leave_, meet_;     ///< from r = leave_[i] to meet_[i] (or on) it is a straight line of slope k
+  double slope_ = 0;                  ///< infinite: no limit
+  std::vector<double> leave_, meet_;  ///< from r = leave_[i] to meet_[i] (or on) it is a straight line of slope k
   std::vector<double> value_at_leave_;
 };
 

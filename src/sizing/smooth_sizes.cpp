@@ -39,9 +39,10 @@ void add_edges(const CellBlock& block, std::vector<std::pair<std::uint32_t, std:
   };
   const CellShape& shape = shape_of(block.type);
   if (shape.num_edges == 0 && block.type != CellType::line && block.type != CellType::vertex && block.size() > 0)
-    throw InputError(fmt::format("background grid: it has cells of type {}; take triangles, quads, tetrahedra, "
-                                 "pyramids, prisms or hexahedra",
-                                 name_of(block.type)));
+    throw InputError(
+        fmt::format("background grid: it has cells of type {}; take triangles, quads, tetrahedra, "
+                    "pyramids, prisms or hexahedra",
+                    name_of(block.type)));
   for (std::size_t c = 0; c < block.size(); ++c) {
     const auto cell = block[c];
     if (block.type == CellType::line) add(cell[0], cell[1]);
@@ -110,8 +111,9 @@ std::vector<double> smooth_sizes(const Mesh& grid, const SizeField& sources, dou
   for (std::size_t v = 0; v < grid.points.size(); ++v) {
     const Point p = grid.points[VertexId(v)];
     if (!is_finite(p))
-      throw InputError(fmt::format("background grid: vertex {} is at ({}, {}, {}); all must be numbers", v, p.x, p.y, p.z),
-                       {{p, {static_cast<std::uint32_t>(v)}}});
+      throw InputError(
+          fmt::format("background grid: vertex {} is at ({}, {}, {}); all must be numbers", v, p.x, p.y, p.z),
+          {{p, {static_cast<std::uint32_t>(v)}}});
   }
   const double slope = (growth - 1) / growth;
   const Neighbours neighbours = find_neighbours(grid);

@@ -3,7 +3,8 @@
 //
 // Triangles: the nearest place is the foot of the perpendicular where that lies inside (by the contravariant basis),
 // else on an edge. Distances are measured to a place on the shape and the least is taken, so that an error of its
-// parameters counts by its square only; triangles flatter than 1e-8 are taken for their edges, within rounding the same.
+// parameters counts by its square only; triangles flatter than 1e-8 are taken for their edges, within rounding the
+// same.
 #include "sizing/source_shapes.hpp"
 
 #include <algorithm>
@@ -62,8 +63,8 @@ struct CheckShape {
     check_point("max", b.box.high);
     for (int k = 0; k < 3; ++k)
       if (!(b.box.low[k] <= b.box.high[k]))
-        throw UsageError(fmt::format("box: min {} > max {} along {}; exchange them", b.box.low[k], b.box.high[k],
-                                     "xyz"[k]));
+        throw UsageError(
+            fmt::format("box: min {} > max {} along {}; exchange them", b.box.low[k], b.box.high[k], "xyz"[k]));
   }
   void operator()(const Ball& b) const {
     check_point("centre", b.centre);
@@ -75,9 +76,10 @@ struct CheckShape {
     check_radius("radius_from", f.radius_from);
     check_radius("radius_to", f.radius_to);
     if (f.from == f.to)
-      throw UsageError(fmt::format("cylinder or cone with from = to = [{}, {}, {}]: it has no axis; move one end "
-                                   "or take a sphere",
-                                   f.from.x, f.from.y, f.from.z));
+      throw UsageError(
+          fmt::format("cylinder or cone with from = to = [{}, {}, {}]: it has no axis; move one end "
+                      "or take a sphere",
+                      f.from.x, f.from.y, f.from.z));
   }
   void operator()(const FacetShape& f) const {
     if (!f.surface) throw UsageError("surface: there is no surface; give a facet file");
@@ -108,7 +110,8 @@ PlacedShape::PlacedShape(const SourceShape& shape, const Motion& motion, double 
     place_simplex(*simplex, motion, time);
     return;
   }
-  const Point axes[3] = {motion.turned(time, {1, 0, 0}), motion.turned(time, {0, 1, 0}), motion.turned(time, {0, 0, 1})};
+  const Point axes[3] = {motion.turned(time, {1, 0, 0}), motion.turned(time, {0, 1, 0}),
+                         motion.turned(time, {0, 0, 1})};
   if (const auto* box = std::get_if<AlignedBox>(&shape)) {
     kind_ = Kind::box;
     at_ = motion.at(time, box->box.centre());
@@ -214,13 +217,20 @@ double PlacedShape::distance_to_frustum(Point q) const {
 
 double PlacedShape::distance(Point p) const {
   switch (kind_) {
-    case Kind::point: return length(p - at_);
-    case Kind::segment: return std::sqrt(squared_to_segment(p - at_, u_, a_));
-    case Kind::triangle: return distance_to_triangle(p - at_);
-    case Kind::box: return distance_to_box(p);
-    case Kind::ball: return std::max(0.0, length(p - at_) - a_);
-    case Kind::frustum: return distance_to_frustum(p - at_);
-    case Kind::facets: break;
+    case Kind::point:
+      return length(p - at_);
+    case Kind::segment:
+      return std::sqrt(squared_to_segment(p - at_, u_, a_));
+    case Kind::triangle:
+      return distance_to_triangle(p - at_);
+    case Kind::box:
+      return distance_to_box(p);
+    case Kind::ball:
+      return std::max(0.0, length(p - at_) - a_);
+    case Kind::frustum:
+      return distance_to_frustum(p - at_);
+    case Kind::facets:
+      break;
   }
   if (a_ == 1) return facets_->distance(p);
   const Point q = p - at_;

@@ -71,8 +71,8 @@ SourceSizeField::SourceSizeField(const std::vector<SizeSource>& sources, const S
     term.factor = greatest_factor(turned);
     greatest.push_back(std::move(term));
   }
-  is_scanned_ = options.search == SourceSearch::scan ||
-                (options.search == SourceSearch::automatic && plain.size() < kScanBelow);
+  is_scanned_ =
+      options.search == SourceSearch::scan || (options.search == SourceSearch::automatic && plain.size() < kScanBelow);
   plain_ = SourceTree(std::move(plain), context);
   least_ = SourceTree(std::move(least), context);
   greatest_ = SourceTree(std::move(greatest), context);
@@ -87,13 +87,11 @@ Metric SourceSizeField::metric_at(Point at, Hints& hints) const {
   const double plain = plain_size(at, hints);
   Metric metric = isotropic_metric(plain);
   const double bound = std::min(plain, greatest_.least(at, hints.greatest));
-  // Infinite: whatever is finite counts.
-  for (const std::uint32_t i : least_.below({at, at}, bound)) {
+  // The one that sets the bound is among them, also where its lengths are the same in all directions.
+  for (const std::uint32_t i : least_.below({at, at}, std::nextafter(bound, kInfinity))) {
     const double delta = stretched_[i](at);
     if (std::isfinite(delta)) metric = intersection(metric, stretched_metric(delta, stretching_[i]));
   }
-  // The source that set the bound is not below it where its lengths are the same in all directions.
-  if (metric.xx == 0 && metric.yy == 0 && metric.zz == 0 && std::isfinite(bound)) return isotropic_metric(bound);
   return metric;
 }
 
@@ -118,15 +116,14 @@ void SourceSizeField::metrics(std::span<const Point> at, std::span<Metric> metri
     metric[i] = is_isotropic() ? isotropic_metric(plain_size(at[i], hints)) : metric_at(at[i], hints);
 }
 
-/// An intersection by simultaneous reduction is (as a quadratic form) at most the sum of its parts, so that its greatest
-/// eigenvalue is at most the sum of theirs.
+/// An intersection by simultaneous reduction is (as a quadratic form) at most the sum of its parts, so that its
+/// greatest eigenvalue is at most the sum of theirs.
 double SourceSizeField::stretched_lower_bound(const Box& box) const {
-  double sum = plain_.empty() ? 0 : std::pow(plain_.lower_bound(box), -2);
-  for (const std::uint32_t i : least_.below(box, kInfinity)) {
-    SourceTerm term = stretched_[i];
-    term.factor = least_factor(stretching_[i]);
-    sum += std::pow(term.lower_bound(box), -2);
-  }
+  double sum = 0;
+  auto add = [&](double size) { sum += 1 / (size * size); };
+  if (!plain_.empty()) add(box.is_empty() ? plain_.smallest() : plain_.lower_bound(box));
+  for (std::size_t i = 0; i < stretched_.size(); ++i)
+    add(least_factor(stretching_[i]) * (box.is_empty() ? stretched_[i].law.delta0() : stretched_[i].lower_bound(box)));
   return sum > 0 ? (1 - 1e-9) / std::sqrt(sum) : kInfinity;
 }
 
@@ -140,12 +137,13 @@ void check_motion(const Motion& motion) {
       !std::isfinite(motion.degrees_rate))
     throw UsageError("motion: velocity, centre, axis and rate must be numbers");
   if (motion.degrees_rate != 0 && motion.axis == Point{})
-    throw UsageError(fmt::format("motion: rate = {} but the axis is [0, 0, 0]; give the axis to turn about",
-                                 motion.degrees_rate));
+    throw UsageError(
+        fmt::format("motion: rate = {} but the axis is [0, 0, 0]; give the axis to turn about", motion.degrees_rate));
 }
 
 void check_sources(const std::vector<SizeSource>& sources, const SourceFieldOptions& options) {
-  if (sources.empty()) throw UsageError("size sources: there is none; give at least one [[size.source]] or [[size.box]]");
+  if (sources.empty())
+    throw UsageError("size sources: there is none; give at least one [[size.source]] or [[size.box]]");
   if (!(options.growth > 1))
     throw UsageError(fmt::format("growth is {}; it must be a number greater than 1, e.g. 1.2", options.growth));
   if (!std::isfinite(options.time)) throw UsageError(fmt::format("size.time = {}: it must be a number", options.time));

@@ -2,8 +2,8 @@
 // Branch and bound over sources.
 //
 // A law turned around says how far a source reaches: within which distance it can give less than a size. So each child
-// of a node keeps, for 64 sizes, the largest reach of the sources in it; a search looks up once which of the 64 sizes is
-// the next above the best value so far, and enters the children whose boxes are nearer than their reach for it. The
+// of a node keeps, for 64 sizes, the largest reach of the sources in it; a search looks up once which of the 64 sizes
+// is the next above the best value so far, and enters the children whose boxes are nearer than their reach for it. The
 // sizes are quantiles of those that the field has at places of a sample, so that they stand dense where they matter:
 // with flat laws a whole field may lie within a few per cent.
 //
@@ -12,8 +12,9 @@
 // computed by SourceTerm alone and the least of them is taken: the result is the same to the bit for any start value,
 // any order of the search, and for the plain scan.
 //
-// Places come in runs that are near each other. For each run the children that may matter anywhere in its box, below what
-// the winner at its first place asks for there at most, are found once; its places begin there instead of at the root.
+// Places come in runs that are near each other. For each run the children that may matter anywhere in its box, below
+// what the winner at its first place asks for there at most, are found once; its places begin there instead of at the
+// root.
 //
 // The tree is built top down for the least expected work: a child is entered with the probability that a place lies
 // in its box widened by its reach, averaged over the sizes of the sample (the surface-area heuristic, with volumes).
@@ -96,8 +97,7 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
       for (std::size_t c = 0; c < kWidth; ++c) {
         for (int k = 0; k < 3; ++k) nodes_[n].low[k][c] = from.low[k][c], nodes_[n].high[k][c] = from.high[k][c];
         nodes_[n].child[c] = from.child[c];
-        for (std::size_t b = 0; b < kBins; ++b)
-          reaches_[b * nodes_.size() + n].squared[c] = from.reach[b][c];
+        for (std::size_t b = 0; b < kBins; ++b) reaches_[b * nodes_.size() + n].squared[c] = from.reach[b][c];
       }
     }
     std::vector<SourceTerm> sorted;
@@ -296,6 +296,10 @@ double SourceTree::least(Point p, Hint& hint, Frontier* frontier) const {
 
 void SourceTree::least(std::span<const Point> at, std::span<double> size) const {
   Hint hint;
+  if (at.size() < kLeastChunk) {
+    for (std::size_t i = 0; i < at.size(); ++i) size[i] = least(at[i], hint, nullptr);
+    return;
+  }
   Frontier frontier{};
   for (std::size_t begin = 0; begin < at.size(); begin += kChunk) {
     const std::size_t end = std::min(at.size(), begin + kChunk);

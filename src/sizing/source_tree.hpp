@@ -43,8 +43,8 @@ class SourceTree {
   double least_by_scan(Point p) const;
   /// @brief A lower bound over a box, not above the least term at its centre.
   double lower_bound(const Box& box) const;
-  /// @brief Numbers (as given) of the terms below `size` somewhere in the box as far as lower bounds tell (at p: exactly
-  /// those), ascending.
+  /// @brief Numbers (as given) of the terms below `size` somewhere in the box as far as lower bounds tell (at p:
+  /// exactly those), ascending.
   std::vector<std::uint32_t> below(const Box& box, double size) const;
   double largest() const;
   double smallest() const;  ///< the least delta0
@@ -95,10 +95,10 @@ class SourceTree {
   double least(Point p, Hint& hint, Frontier* frontier) const;
   std::vector<double> sample_sizes() const;
 
-  std::vector<SourceTerm> terms_;       // in the order of the leaves
-  std::vector<std::uint32_t> number_;   // as given
+  std::vector<SourceTerm> terms_;      // in the order of the leaves
+  std::vector<std::uint32_t> number_;  // as given
   std::vector<Node> nodes_;
-  std::vector<Reach> reaches_;          // (kBins, nodes): a search stays with few bins
+  std::vector<Reach> reaches_;  // (kBins, nodes): a search stays with few bins
   Point centre_;
   double extent_ = 1, per_extent_ = 1;
   alignas(64) double edge_[kBins] = {};  // sizes, ascending; the last is infinite

@@ -102,8 +102,12 @@ void SourceTreeBuilder::set_tables() {
     for (std::size_t s = 0; s < kSamples; ++s) item.reach[s] = reach_[i * kBins + s * (kBins - 5) / kSamples + 1];
     const Box& box = term.shape.box();
     for (int k = 0; k < 3; ++k) {
-      item.low[k] = static_cast<float>((box.low[k] - centre_[k]) / extent_) - kMargin;
-      item.high[k] = static_cast<float>((box.high[k] - centre_[k]) / extent_) + kMargin;
+      // Sides of moved and round shapes, and distances to them, round with the size of the coordinates.
+      const double rounding =
+          16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(box.low[k]), std::abs(box.high[k])) / extent_;
+      const float margin = kMargin + static_cast<float>(rounding);
+      item.low[k] = static_cast<float>((box.low[k] - centre_[k]) / extent_) - margin;
+      item.high[k] = static_cast<float>((box.high[k] - centre_[k]) / extent_) + margin;
       item.key[k] = 0.5f * (item.low[k] + item.high[k]);
     }
     item.key[3] = static_cast<float>(first);
@@ -139,7 +143,8 @@ void SourceTreeBuilder::set_child(Node& node, std::size_t lane, const Cluster& c
   }
   for (int k = 0; k < 3; ++k) node.low[k][lane] = bounds.low[k], node.high[k][lane] = bounds.high[k];
   for (std::size_t b = 0; b < kBins; ++b)
-    node.reach[b][lane] = reach[b] < 0 ? std::uint16_t(0) : upper_half(std::min(3e38, double(reach[b]) * double(reach[b])));
+    node.reach[b][lane] =
+        reach[b] < 0 ? std::uint16_t(0) : upper_half(std::min(3e38, double(reach[b]) * double(reach[b])));
 }
 
 std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Context& context) {

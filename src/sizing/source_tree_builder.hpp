@@ -36,7 +36,7 @@ class SourceTreeBuilder {
   static constexpr std::size_t kPlanes = 16;
   struct Item {
     float low[3], high[3];
-    float key[4];              // centre, and the first bin that it reaches in
+    float key[4];  // centre, and the first bin that it reaches in
     float reach[kSamples];
     std::uint32_t term;
   };

@@ -16,7 +16,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A cube of n^3 hexahedra, each of six tetrahedra.
 Mesh make_grid(int n) {
   Mesh mesh;
-  const auto id = [n](int i, int j, int k) { return VertexId(static_cast<std::size_t>((k * (n + 1) + j) * (n + 1) + i)); };
+  const auto id = [n](int i, int j, int k) {
+    return VertexId(static_cast<std::size_t>((k * (n + 1) + j) * (n + 1) + i));
+  };
   for (int k = 0; k <= n; ++k)
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) mesh.points.push_back({double(i) / n, double(j) / n, double(k) / n});

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sizing/source_shapes.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "delfront/errors.hpp"
 #include "delfront/size_sources.hpp"
-#include "sizing/source_shapes.hpp"
 #include "support/support.hpp"
 
 namespace delfront {
@@ -200,10 +201,8 @@ TEST(SourceShapes, S4_a_moved_shape_is_as_far_from_moved_places) {
   const Motion motion{{0.3, -1, 2}, {1, 2, 3}, {1, -1, 0.5}, 77};
   const FacetShape cube{build_facet_surface(triangles_of(fixtures::cube_surface()), true)};
   const std::vector<SourceShape> shapes = {triangle({0, 0, 0}, {1, 0.2, 0}, {0, 1, 0.4}),
-                                           AlignedBox{{{0, 0, 0}, {1, 2, 3}}},
-                                           Ball{{1, 1, 1}, 0.5},
-                                           Frustum{{0, 0, 0}, {1, 2, 3}, 0.5, 0.2},
-                                           cube};
+                                           AlignedBox{{{0, 0, 0}, {1, 2, 3}}}, Ball{{1, 1, 1}, 0.5},
+                                           Frustum{{0, 0, 0}, {1, 2, 3}, 0.5, 0.2}, cube};
   for (const SourceShape& shape : shapes)
     for (int i = 0; i < 200; ++i) {
       const Point p = random.point(3);

@@ -31,8 +31,9 @@ enum class Kinds { simplices, all };
 
 SourceShape random_shape(Random& random, int kind, double size) {
   const Point a = random.point(1), b = a + random.point(size), c = a + random.point(size);
-  if (kind == 3) return AlignedBox{{{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                                    {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}}};
+  if (kind == 3)
+    return AlignedBox{{{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                       {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}}};
   if (kind == 4) return Ball{a, size * random.between(0, 1)};
   if (kind == 5) return Frustum{a, b, size * random.between(0, 1), size * random.between(0, 1)};
   return Simplex{{a, b, c}, kind + 1};
@@ -136,6 +137,22 @@ TEST(SourceSizeField, S5_clusters_of_many_scales_and_equal_sources) {
     ASSERT_EQ(tree->size(p), scan->size(p)) << "seed " << kSeed << " place " << i;
   }
   EXPECT_EQ(tree->size({1e200, 0, 0}), scan->size({1e200, 0, 0}));
+}
+
+TEST(SourceSizeField, S5_small_bodies_far_from_the_origin) {
+  Random random;
+  std::vector<SizeSource> sources;
+  for (int i = 0; i < 300; ++i) {
+    SizeLaw law;
+    law.delta0 = 1e-5 * random.between(1, 2);
+    law.r1 = 1e-3;
+    sources.push_back({Ball{Point{1e9, -1e9, 1e9} + 1e-3 * random.point(1), 1e-4}, law, {}, {}, ""});
+  }
+  const auto tree = build(sources), scan = build(sources, kInfinity, SourceSearch::scan);
+  for (int i = 0; i < 1000; ++i) {
+    const Point p = Point{1e9, -1e9, 1e9} + 3e-3 * random.point(1);
+    ASSERT_EQ(tree->size(p), scan->size(p)) << "seed " << kSeed << " place " << i;
+  }
 }
 
 TEST(SourceSizeField, S5_lower_bounds_are_never_violated) {
@@ -265,8 +282,8 @@ TEST(SourceSizeField, S4_sources_move_with_time) {
     if (std::abs(other - size) < 1e-11 * size) continue;
     bool is_at_step = false;
     for (const SizeSource& source : sources)
-      is_at_step |= source.law.kind == SizeLaw::Kind::step &&
-                    std::abs(distance_to(source.shape, p) - source.law.r0) < 1e-12;
+      is_at_step |=
+          source.law.kind == SizeLaw::Kind::step && std::abs(distance_to(source.shape, p) - source.law.r0) < 1e-12;
     EXPECT_TRUE(is_at_step) << "seed " << kSeed << " place " << i;
   }
 }
@@ -278,6 +295,7 @@ std::vector<SizeSource> stretched_sources(int n, Random& random) {
     const Motion turn{{}, {}, random.point(1), random.between(0, 360)};
     sources[i].stretching = Stretching{random.between(0.2, 5), random.between(0.2, 5), turn.turned(1, {1, 0, 0}),
                                        turn.turned(1, {0, 1, 0})};
+    if (i % 4 == 1) sources[i].stretching->s1 = sources[i].stretching->s2 = 1;
     sources[i].law.delta0 = 0.01 * random.between(1, 2);
   }
   return sources;
@@ -324,8 +342,7 @@ TEST(SourceSizeField, S4_metrics_respect_every_source_and_skip_only_what_cannot_
       EXPECT_NEAR(length_in(metric, e) / length_in(all, e), 1, 1e-6) << "seed " << kSeed << " place " << i;
       for (const SizeSource& source : sources) {
         if (!source.stretching) continue;
-        const Metric one =
-            stretched_metric(source.law.size_at(distance_to(source.shape, p)), *source.stretching);
+        const Metric one = stretched_metric(source.law.size_at(distance_to(source.shape, p)), *source.stretching);
         ASSERT_GE(length_in(metric, e), length_in(one, e) * (1 - 1e-7));
       }
     }
@@ -336,6 +353,8 @@ TEST(SourceSizeField, S4_metrics_respect_every_source_and_skip_only_what_cannot_
 TEST(SourceSizeField, S4_lower_bounds_hold_with_stretchings) {
   Random random;
   const auto field = build(stretched_sources(40, random));
+  EXPECT_GT(field->lower_bound(Box{}), 0);
+  EXPECT_LE(field->lower_bound(Box{}), 0.02);
   for (int b = 0; b < 200; ++b) {
     const Point centre = random.point(1.5);
     const Point half = std::pow(10, random.between(-4, 0)) * Point{1, 1, 1};
