@@ -2,20 +2,26 @@
 // Size sources (S5): time of one evaluation for growing numbers of sources, by scanning all and by the tree.
 //
 //   size_field_bench [--sources 10,100,...] [--layout all|scattered|curves|surfaces] [--points N] [--repeat N]
+//   [--methods scan,tree] size_field_bench --given SOURCES PLACES OUT     sources and places from files, as
+//   compare_sizes.py gives them
 //
 // Points lie in the unit cube in Hilbert order; sources are points, segments and triangles of all three laws, scattered
 // in the cube, along curves, or on surfaces. One line a case: layout, sources, method, build seconds, million
-// evaluations a second (median), and the sum of all sizes, which must not depend on the method.
+// evaluations a second (median; of this process's own
+// time on one core), and the sum of all sizes, which must not depend on the method.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <random>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -105,9 +111,9 @@ std::vector<Point> make_points(std::size_t n) {
 }
 
 double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 void run_case(const std::string& layout, std::size_t n, bool is_tree, std::size_t num_points, int repeat) {
@@ -129,9 +135,37 @@ void run_case(const std::string& layout, std::size_t n, bool is_tree, std::size_
   double sum = 0;
   for (std::size_t i = 0; i < at.size(); ++i)
     if (is_tree ? i % std::max<std::size_t>(1, num_points / scanned) == 0 : true) sum += size[i];
-  fmt::print("{:10} {:7} {:5} {:8.3f} {:9.4f} {:.15g}\n", layout, n, is_tree ? "tree" : "scan", build,
+  fmt::print("{:10} {:7} {:5} {:8.3f} {:9.4g} {:.15g}\n", layout, n, is_tree ? "tree" : "scan", build,
              static_cast<double>(at.size()) / times[times.size() / 2] * 1e-6, sum);
   std::fflush(stdout);
+}
+
+std::vector<double> read_numbers(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error(file + " cannot be read");
+  return {std::istream_iterator<double>(stream), {}};
+}
+
+/// Points with linear laws from a file (x y z delta0 r1), places from another (x y z), sizes to a third.
+void run_given(const std::string& source_file, const std::string& place_file, const std::string& out_file) {
+  const std::vector<double> s = read_numbers(source_file), p = read_numbers(place_file);
+  std::vector<SizeSource> sources;
+  for (std::size_t i = 0; i + 4 < s.size(); i += 5) {
+    delfront::SizeLaw law;
+    law.delta0 = s[i + 3];
+    law.r1 = s[i + 4];
+    sources.push_back({delfront::Simplex{{Point{s[i], s[i + 1], s[i + 2]}}, 1}, law, {}, {}, ""});
+  }
+  std::vector<Point> at;
+  for (std::size_t i = 0; i + 2 < p.size(); i += 3) at.push_back({p[i], p[i + 1], p[i + 2]});
+  std::vector<double> size(at.size());
+  delfront::Context context;
+  std::unique_ptr<delfront::SizeField> field;
+  const double build = seconds_of([&] { field = build_source_size_field(std::move(sources), {}, context); });
+  const double evaluate = seconds_of([&] { field->sizes(at, size); });
+  std::ofstream out(out_file);
+  for (const double value : size) out << fmt::format("{:.17g}\n", value);
+  fmt::print("{:.6f} {:.6f}\n", build, evaluate);
 }
 
 std::vector<std::string> words(const std::string& text) {
@@ -143,7 +177,11 @@ std::vector<std::string> words(const std::string& text) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
+  if (argc == 5 && std::string(argv[1]) == "--given") {
+    run_given(argv[2], argv[3], argv[4]);
+    return 0;
+  }
   std::vector<std::string> layouts = {"scattered", "curves", "surfaces"}, methods = {"scan", "tree"};
   std::vector<std::string> counts = {"10", "100", "1000", "10000", "100000"};
   std::size_t num_points = 1'000'000;
@@ -163,4 +201,7 @@ int main(int argc, char** argv) {
         run_case(layout, static_cast<std::size_t>(std::strtod(count.c_str(), nullptr)), method == "tree", num_points,
                  repeat);
   return 0;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "{}\n", error.what());
+  return 1;
 }

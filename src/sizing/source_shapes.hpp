@@ -27,9 +27,14 @@ class PlacedShape {
   double distance_to_box(Point from_centre) const;
   double distance_to_frustum(Point from_end) const;
 
+  // In the order of use: a point or line is within the first 64 bytes.
+  Point at_;  ///< corner, centre, end; of facets where the centre of their box is now
   Kind kind_ = Kind::point;
-  double a_ = 0, b_ = 0, c_ = 0;  ///< inverse squared lengths of edges; radius; radii and length
-  Point at_, u_, v_, w_, g_, h_;  ///< corner, edges, contravariant basis; centre, axes; origin of facets, their frame
+  Point u_;               ///< edge, axis, first direction of a box or of facets
+  double a_ = 0;          ///< inverse squared length of u; radius; half side; of facets 1 where they stand still
+  Point v_, w_;           ///< edges, directions
+  double b_ = 0, c_ = 0;  ///< inverse squared lengths of v, w; second radius, length; half sides
+  Point g_, h_;           ///< contravariant basis; corners of a box; of facets the centre of their own box
   Box box_;
   std::shared_ptr<const FacetSurface> facets_;
 };

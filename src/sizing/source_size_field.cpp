@@ -33,7 +33,7 @@ class SourceSizeField final : public SizeField {
 
  private:
   struct Hints {
-    std::uint32_t plain = SourceTree::kNone, greatest = SourceTree::kNone;
+    SourceTree::Hint plain, greatest;
   };
   double plain_size(Point at, Hints& hints) const;
   Metric metric_at(Point at, Hints& hints) const;
@@ -80,25 +80,24 @@ SourceSizeField::SourceSizeField(const std::vector<SizeSource>& sources, const S
 
 double SourceSizeField::plain_size(Point at, Hints& hints) const {
   if (plain_.empty()) return kInfinity;
-  return is_scanned_ ? plain_.least_by_scan(at) : plain_.least(at, kInfinity, hints.plain);
+  return is_scanned_ ? plain_.least_by_scan(at) : plain_.least(at, hints.plain);
 }
 
 Metric SourceSizeField::metric_at(Point at, Hints& hints) const {
   const double plain = plain_size(at, hints);
   Metric metric = isotropic_metric(plain);
-  const double bound = std::min(plain, greatest_.least(at, kInfinity, hints.greatest));
-  // Infinite: whatever is finite counts.
-  for (const std::uint32_t i : least_.below({at, at}, bound)) {
+  const double bound = std::min(plain, greatest_.least(at, hints.greatest));
+  // The one that sets the bound is among them, also where its lengths are the same in all directions.
+  for (const std::uint32_t i : least_.below({at, at}, std::nextafter(bound, kInfinity))) {
     const double delta = stretched_[i](at);
     if (std::isfinite(delta)) metric = intersection(metric, stretched_metric(delta, stretching_[i]));
   }
-  // The source that set the bound is not below it where its lengths are the same in all directions.
-  if (metric.xx == 0 && metric.yy == 0 && metric.zz == 0 && std::isfinite(bound)) return isotropic_metric(bound);
   return metric;
 }
 
 void SourceSizeField::sizes(std::span<const Point> at, std::span<double> size) const {
   DELFRONT_CHECK(at.size() == size.size());
+  if (is_isotropic() && !is_scanned_) return plain_.least(at, size);
   Hints hints;
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (is_isotropic()) {
@@ -120,12 +119,11 @@ void SourceSizeField::metrics(std::span<const Point> at, std::span<Metric> metri
 /// An intersection by simultaneous reduction is (as a quadratic form) at most the sum of its parts, so that its
 /// greatest eigenvalue is at most the sum of theirs.
 double SourceSizeField::stretched_lower_bound(const Box& box) const {
-  double sum = plain_.empty() ? 0 : std::pow(plain_.lower_bound(box), -2);
-  for (const std::uint32_t i : least_.below(box, kInfinity)) {
-    SourceTerm term = stretched_[i];
-    term.factor = least_factor(stretching_[i]);
-    sum += std::pow(term.lower_bound(box), -2);
-  }
+  double sum = 0;
+  auto add = [&](double size) { sum += 1 / (size * size); };
+  if (!plain_.empty()) add(box.is_empty() ? plain_.smallest() : plain_.lower_bound(box));
+  for (std::size_t i = 0; i < stretched_.size(); ++i)
+    add(least_factor(stretching_[i]) * (box.is_empty() ? stretched_[i].law.delta0() : stretched_[i].lower_bound(box)));
   return sum > 0 ? (1 - 1e-9) / std::sqrt(sum) : kInfinity;
 }
 

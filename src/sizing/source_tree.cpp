@@ -2,7 +2,7 @@
 // Branch and bound over sources.
 //
 // A law turned around says how far a source reaches: within which distance it can give less than a size. So each child
-// of a node keeps, for 32 sizes, the largest reach of the sources in it; a search looks up once which of the 32 sizes
+// of a node keeps, for 64 sizes, the largest reach of the sources in it; a search looks up once which of the 64 sizes
 // is the next above the best value so far, and enters the children whose boxes are nearer than their reach for it. The
 // sizes are quantiles of those that the field has at places of a sample, so that they stand dense where they matter:
 // with flat laws a whole field may lie within a few per cent.
@@ -11,6 +11,10 @@
 // kWiden, which is more than all rounding of single precision adds up to, so that no source is missed. Values are
 // computed by SourceTerm alone and the least of them is taken: the result is the same to the bit for any start value,
 // any order of the search, and for the plain scan.
+//
+// Places come in runs that are near each other. For each run the children that may matter anywhere in its box, below
+// what the winner at its first place asks for there at most, are found once; its places begin there instead of at the
+// root.
 //
 // The tree is built top down for the least expected work: a child is entered with the probability that a place lies
 // in its box widened by its reach, averaged over the sizes of the sample (the surface-area heuristic, with volumes).
@@ -34,6 +38,19 @@ constexpr std::uint32_t kTermBit = 0x80000000u;
 constexpr float kFar = 1e18f;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxStack = 1024;  // seven left a level, 64 levels (see SourceTreeBuilder) and more
+
+constexpr std::size_t kChunk = 64, kLeastChunk = 8;  // places that share a frontier
+
+template <class Lanes>
+unsigned mask_of(const Lanes& is_set) {
+#if defined(__AVX__)
+  return static_cast<unsigned>(_mm256_movemask_ps(std::bit_cast<__m256>(is_set)));
+#else
+  unsigned mask = 0;
+  for (unsigned k = 0; k < 8; ++k) mask |= (is_set[k] != 0 ? 1u : 0u) << k;
+  return mask;
+#endif
+}
 
 double distance_of_boxes(const Box& a, const Box& b) {
   Point away;
@@ -59,6 +76,7 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
   centre_ = box.centre();
   extent_ = 0.5 * box.longest_side();
   if (!(extent_ > 0)) extent_ = 1;
+  per_extent_ = 1 / extent_;
   number_.resize(terms_.size());
   for (std::size_t i = 0; i < number_.size(); ++i) number_[i] = static_cast<std::uint32_t>(i);
   // The first tree, for sizes spread evenly from the least delta0, serves to sample the field for the second.
@@ -73,13 +91,13 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
     const auto order = builder.build(context);
     std::copy(builder.edges().begin(), builder.edges().end(), edge_);
     nodes_.assign(builder.nodes().size(), {});
-    reaches_.assign(builder.nodes().size(), {});
+    reaches_.assign(builder.nodes().size() * kBins, {});
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       const SourceTreeBuilder::Node& from = builder.nodes()[n];
       for (std::size_t c = 0; c < kWidth; ++c) {
         for (int k = 0; k < 3; ++k) nodes_[n].low[k][c] = from.low[k][c], nodes_[n].high[k][c] = from.high[k][c];
         nodes_[n].child[c] = from.child[c];
-        for (std::size_t b = 0; b < kBins; ++b) reaches_[n].squared[b][c] = from.reach[b][c];
+        for (std::size_t b = 0; b < kBins; ++b) reaches_[b * nodes_.size() + n].squared[c] = from.reach[b][c];
       }
     }
     std::vector<SourceTerm> sorted;
@@ -97,92 +115,171 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
 std::vector<double> SourceTree::sample_sizes() const {
   std::mt19937_64 random(1);
   std::vector<double> sizes;
-  std::uint32_t hint = kNone;
+  Hint hint;
   auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   for (int i = 0; i < 2048; ++i) {
     Point p{2 * unit() - 1, 2 * unit() - 1, 2 * unit() - 1};
     p = centre_ + 1.1 * extent_ * p;
-    sizes.push_back(least(p, kInfinity, hint));
+    sizes.push_back(least(p, hint));
   }
   return sizes;
 }
 
-int SourceTree::bin_of(double size) const {
-  int bin = 0;
-  for (int k = 0; k < kBins; ++k) bin += edge_[k] < size;
-  return bin;
+SourceTree::Lanes SourceTree::Reach::lanes() const {
+  using Halves = std::uint16_t __attribute__((vector_size(2 * kWidth)));
+  using Words = std::uint32_t __attribute__((vector_size(4 * kWidth)));
+  return std::bit_cast<Lanes>(__builtin_convertvector(std::bit_cast<Halves>(squared), Words) << 16);
 }
 
-SourceTree::Query SourceTree::start(const Box& box, double best) const {
-  Query query{{}, {}, best, bin_of(best)};
+float SourceTree::Reach::lane(std::uint32_t k) const {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(squared[k]) << 16);
+}
+
+/// The first bin whose size is not below `size`.
+int SourceTree::bin_of(double size, int guess) const {
+  while (edge_[guess] < size) ++guess;
+  while (guess > 0 && !(edge_[guess - 1] < size)) --guess;
+  return guess;
+}
+
+SourceTree::Query SourceTree::start(Point low, Point high, double best, int bin) const {
+  Query query{{}, {}, best, bin_of(best, bin)};
   for (int k = 0; k < 3; ++k) {
     const auto place = [&](double x) {
-      return std::clamp(static_cast<float>((x - centre_[k]) / extent_), -kFar, kFar);
+      return std::min(kFar, std::max(-kFar, static_cast<float>((x - centre_[k]) * per_extent_)));
     };
-    query.low[k] = place(box.low[k]);
-    query.high[k] = place(box.high[k]);
+    query.low[k] = place(low[k]);
+    query.high[k] = place(high[k]);
   }
   return query;
 }
 
-/// Calls visit(term) for each that may be below query.best, which `visit` may lower.
+SourceTree::Lanes SourceTree::squared_distance(const Lanes low[3], const Lanes high[3], const Query& query) {
+  const Lanes zero = {};
+  Lanes sum = zero;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes below = low[k] - query.high[k], above = query.low[k] - high[k];
+    Lanes gap = below > above ? below : above;
+    gap = gap > zero ? gap : zero;
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+void SourceTree::prefetch(std::uint32_t child) const {
+  const auto* first = (child & kTermBit) ? reinterpret_cast<const char*>(&terms_[child & ~kTermBit])
+                                         : reinterpret_cast<const char*>(&nodes_[child]);
+  for (int line = 0; line < 4; ++line) __builtin_prefetch(first + 64 * line);
+}
+
+/// Calls visit(term, squared reach) for each that may be below query.best, which `visit` may lower. Begins at the root,
+/// or at a frontier of a box that holds the query.
 template <class Visit>
-void SourceTree::search(Query& query, const Visit& visit) const {
-  struct Entry {
-    float squared;
-    std::uint32_t child, parent, lane;
-  };
+void SourceTree::search(Query& query, Frontier* frontier, const Visit& visit) const {
   Entry stack[kMaxStack];
   std::size_t top = 0;
-  std::uint32_t node_id = 0;
-  const Lanes zero = {};
-  for (;;) {
-    const Node& node = nodes_[node_id];
-    Lanes sum = zero;
-    for (int k = 0; k < 3; ++k) {
-      const Lanes below = node.low[k] - query.high[k], above = query.low[k] - node.high[k];
-      Lanes gap = below > above ? below : above;
-      gap = gap > zero ? gap : zero;
-      sum += gap * gap;
-    }
-    const auto is_near = sum < reaches_[node_id].squared[query.bin];
-#if defined(__AVX__)
-    auto mask = static_cast<unsigned>(_mm256_movemask_ps(std::bit_cast<__m256>(is_near)));
-#else
-    unsigned mask = 0;
-    for (unsigned k = 0; k < kWidth; ++k) mask |= (is_near[k] != 0 ? 1u : 0u) << k;
-#endif
+  const Reach* reaches = row(query.bin);
+  const auto push = [&](Entry entry, std::size_t bottom) {  // the nearest on top
+    std::size_t place = top++;
+    for (; place > bottom && stack[place - 1].squared < entry.squared; --place) stack[place] = stack[place - 1];
+    stack[place] = entry;
+    prefetch(entry.child);
+  };
+  const auto enter = [&](std::uint32_t id) {
+    const Node& node = nodes_[id];
+    const Lanes away = squared_distance(node.low, node.high, query);
     const std::size_t bottom = top;
-    for (; mask != 0; mask &= mask - 1) {
+    for (unsigned mask = mask_of(away < reaches[id].lanes()); mask != 0; mask &= mask - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
-      const std::uint32_t child = node.child[lane];
-      const float squared = sum[lane];
-      std::size_t place = top++;  // the nearest on top
-      for (; place > bottom && stack[place - 1].squared < squared; --place) stack[place] = stack[place - 1];
-      stack[place] = {squared, child, node_id, lane};
+      push({away[lane], node.child[lane], id, lane}, bottom);
     }
-    for (;;) {
-      if (top == 0) return;
-      const Entry& entry = stack[--top];
-      const float reach = reaches_[entry.parent].squared[query.bin][entry.lane];
-      if (!(entry.squared < reach)) continue;
-      node_id = entry.child;
-      if (!(node_id & kTermBit)) break;
-      visit(node_id & ~kTermBit, reach);
+  };
+  if (frontier == nullptr) {
+    enter(0);
+  } else {
+    if (!(frontier->filled >> query.bin & 1)) fill_reaches(query.bin, *frontier);
+    for (std::size_t g = 0; g * kWidth < frontier->size; ++g) {
+      const Lanes away = squared_distance(frontier->low[g], frontier->high[g], query);
+      for (unsigned mask = mask_of(away < frontier->reach[query.bin][g]); mask != 0; mask &= mask - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
+        Entry entry = frontier->entry[g * kWidth + lane];
+        entry.squared = away[lane];
+        push(entry, 0);
+      }
+    }
+  }
+  while (top > 0) {
+    const Entry entry = stack[--top];
+    const float reach = reaches[entry.parent].lane(entry.lane);
+    if (!(entry.squared < reach)) continue;
+    if (entry.child & kTermBit) {
+      visit(entry.child & ~kTermBit, reach);
+      reaches = row(query.bin);
+    } else {
+      enter(entry.child);
     }
   }
 }
 
-double SourceTree::least(Point p, double best, std::uint32_t& hint) const {
-  std::uint32_t winner = kNone;
-  const std::uint32_t tried = hint;
-  if (tried != kNone) {
-    const double value = terms_[tried](p);
-    if (value < best) best = value, winner = tried;
+/// Breadth first from the root, as far as there is room.
+void SourceTree::find_frontier(const Query& query, Frontier& frontier) const {
+  const Reach* const reaches = row(query.bin);
+  Entry queue[Frontier::kLanes];  // nodes to open: first ... last
+  std::size_t first = 0, last = 0;
+  frontier.size = 0;
+  frontier.filled = 0;
+  const auto add = [&](const Entry& entry) {
+    const std::size_t g = frontier.size / kWidth, lane = frontier.size % kWidth;
+    const Node& parent = nodes_[entry.parent];
+    for (int k = 0; k < 3; ++k) {
+      frontier.low[g][k][lane] = parent.low[k][entry.lane];
+      frontier.high[g][k][lane] = parent.high[k][entry.lane];
+    }
+    frontier.entry[frontier.size++] = entry;
+  };
+  Entry node{0, 0, kNone, 0};
+  for (;;) {
+    const Node& opened = nodes_[node.child];
+    const Lanes away = squared_distance(opened.low, opened.high, query);
+    unsigned mask = mask_of(away < reaches[node.child].lanes());
+    const std::size_t room = Frontier::kLanes - frontier.size - (last - first);
+    if (static_cast<std::size_t>(std::popcount(mask)) > room) {
+      add(node);
+    } else {
+      for (; mask != 0; mask &= mask - 1) {
+        const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
+        const Entry entry{0, opened.child[lane], node.child, lane};
+        if (entry.child & kTermBit)
+          add(entry);
+        else
+          queue[last++ % Frontier::kLanes] = entry;
+      }
+    }
+    if (first == last) break;
+    node = queue[first++ % Frontier::kLanes];
   }
-  Query query = start({p, p}, best);
+}
+
+void SourceTree::fill_reaches(int bin, Frontier& frontier) const {
+  const Reach* const reaches = row(bin);
+  for (std::size_t g = 0; g * kWidth < frontier.size; ++g) {
+    Lanes lanes = {};
+    const std::size_t used = std::min<std::size_t>(kWidth, frontier.size - g * kWidth);
+    for (std::size_t k = 0; k < used; ++k) {
+      const Entry& entry = frontier.entry[g * kWidth + k];
+      lanes[k] = reaches[entry.parent].lane(entry.lane);
+    }
+    frontier.reach[bin][g] = lanes;
+  }
+  frontier.filled |= std::uint64_t(1) << bin;
+}
+
+double SourceTree::least(Point p, Hint& hint, Frontier* frontier) const {
+  std::uint32_t winner = hint.term;
+  const std::uint32_t tried = hint.term;
+  Query query = start(p, p, tried == kNone ? kInfinity : terms_[tried](p), hint.bin);
   const double unit = 1 / (extent_ * extent_);
-  search(query, [&](std::uint32_t t, float reach) {
+  search(query, frontier, [&](std::uint32_t t, float reach) {
     if (t == tried) return;
     const SourceTerm& term = terms_[t];
     const double away = term.shape.distance(p);
@@ -190,11 +287,35 @@ double SourceTree::least(Point p, double best, std::uint32_t& hint) const {
     const double value = term.factor * term.law(away);
     if (!(value < query.best)) return;
     query.best = value;
-    query.bin = bin_of(value);
+    query.bin = bin_of(value, query.bin);
     winner = t;
   });
-  hint = winner;
+  hint = {winner, query.bin};
   return query.best;
+}
+
+void SourceTree::least(std::span<const Point> at, std::span<double> size) const {
+  Hint hint;
+  if (at.size() < kLeastChunk) {
+    for (std::size_t i = 0; i < at.size(); ++i) size[i] = least(at[i], hint, nullptr);
+    return;
+  }
+  Frontier frontier{};
+  for (std::size_t begin = 0; begin < at.size(); begin += kChunk) {
+    const std::size_t end = std::min(at.size(), begin + kChunk);
+    size[begin] = least(at[begin], hint, nullptr);
+    if (end - begin < kLeastChunk || hint.term == kNone) {
+      for (std::size_t i = begin + 1; i < end; ++i) size[i] = least(at[i], hint, nullptr);
+      continue;
+    }
+    Box box;
+    for (std::size_t i = begin; i < end; ++i) box.add(at[i]);
+    // The winner at the first place asks for no more than this anywhere in the box: distances have slope 1.
+    const SourceTerm& term = terms_[hint.term];
+    const double far = (term.shape.distance(at[begin]) + box.diagonal()) * (1 + 1e-12);
+    find_frontier(start(box.low, box.high, term.factor * term.law(far) * (1 + 1e-12), hint.bin), frontier);
+    for (std::size_t i = begin + 1; i < end; ++i) size[i] = least(at[i], hint, &frontier);
+  }
 }
 
 double SourceTree::least_by_scan(Point p) const {
@@ -204,13 +325,14 @@ double SourceTree::least_by_scan(Point p) const {
 }
 
 double SourceTree::lower_bound(const Box& box) const {
-  std::uint32_t hint = kNone;
-  Query query = start(box, least(box.centre(), kInfinity, hint));
-  search(query, [&](std::uint32_t t, float) {
+  Hint hint;
+  const double at_centre = least(box.centre(), hint);
+  Query query = start(box.low, box.high, at_centre, hint.bin);
+  search(query, nullptr, [&](std::uint32_t t, float) {
     const double value = terms_[t].lower_bound(box);
     if (!(value < query.best)) return;
     query.best = value;
-    query.bin = bin_of(value);
+    query.bin = bin_of(value, query.bin);
   });
   return query.best * (1 - 1e-13);
 }
@@ -218,9 +340,9 @@ double SourceTree::lower_bound(const Box& box) const {
 std::vector<std::uint32_t> SourceTree::below(const Box& box, double size) const {
   std::vector<std::uint32_t> found;
   if (terms_.empty()) return found;
-  Query query = start(box, size);
+  Query query = start(box.low, box.high, size, 0);
   const bool is_point = box.low == box.high;
-  search(query, [&](std::uint32_t t, float) {
+  search(query, nullptr, [&](std::uint32_t t, float) {
     if ((is_point ? terms_[t](box.low) : terms_[t].lower_bound(box)) < size) found.push_back(number_[t]);
   });
   std::sort(found.begin(), found.end());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -10,7 +11,7 @@
 namespace delfront {
 
 /// @brief What a source asks for: factor * law(distance to shape).
-struct SourceTerm {
+struct alignas(64) SourceTerm {
   PlacedShape shape;
   LimitedLaw law;
   double factor = 1;
@@ -27,11 +28,18 @@ class SourceTree {
   SourceTree(std::vector<SourceTerm> terms, Context& context);
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
+  static constexpr int kWidth = 8, kBins = 64;
   bool empty() const { return terms_.empty(); }
 
-  /// @brief The least term at p, or `best` where none is below it.
-  /// @param[in,out] hint  a term (by its place in the tree) that may be the least, or kNone; which one it was
-  double least(Point p, double best, std::uint32_t& hint) const;
+  /// What a search found, from which the next one near by may start; changes its time only.
+  struct Hint {
+    std::uint32_t term = kNone;
+    int bin = 0;
+  };
+  /// @brief The least term at p.
+  double least(Point p, Hint& hint) const { return least(p, hint, nullptr); }
+  /// @brief The least terms at many places, quickest where neighbours in the list are near in space.
+  void least(std::span<const Point> at, std::span<double> size) const;
   double least_by_scan(Point p) const;
   /// @brief A lower bound over a box, not above the least term at its centre.
   double lower_bound(const Box& box) const;
@@ -42,37 +50,57 @@ class SourceTree {
   double smallest() const;  ///< the least delta0
 
  private:
-  static constexpr int kWidth = 8;
-  static constexpr int kBins = 32;
   using Lanes = float __attribute__((vector_size(4 * kWidth)));
 
   /// Boxes relative to the centre in units of the extent, widened by more than single precision rounds.
-  struct Node {
+  struct alignas(64) Node {
     Lanes low[3], high[3];
     std::uint32_t child[kWidth];  // a node, or a term with kTermBit set
   };
-  struct Reach {
-    Lanes squared[kBins];  // within which a child may be below the size of the bin; negative: never
+  /// The upper halves of single precision numbers: squared distances within which a child may be below the size of a
+  /// bin; 0: never.
+  struct alignas(16) Reach {
+    std::uint16_t squared[kWidth];
+    Lanes lanes() const;
+    float lane(std::uint32_t k) const;
   };
   struct Query {
     float low[3], high[3];
     double best;
     int bin;
   };
-  struct Builder;
+  /// A child that may matter in a box; where it stands, for its reach.
+  struct Entry {
+    float squared;
+    std::uint32_t child, parent, lane;
+  };
+  /// Children that together hold all that matters in a box, below one size.
+  struct Frontier {
+    static constexpr std::size_t kLanes = 32, kGroups = kLanes / kWidth;
+    std::size_t size = 0;
+    std::uint64_t filled = 0;  ///< bins whose reaches are there
+    Lanes low[kGroups][3], high[kGroups][3], reach[kBins][kGroups];
+    Entry entry[kLanes];
+  };
 
-  Query start(const Box& box, double best) const;
-  int bin_of(double size) const;
+  Query start(Point low, Point high, double best, int bin) const;
+  int bin_of(double size, int guess) const;
   template <class Visit>
-  void search(Query& query, const Visit& visit) const;
+  void search(Query& query, Frontier* frontier, const Visit& visit) const;
+  static Lanes squared_distance(const Lanes low[3], const Lanes high[3], const Query& query);
+  const Reach* row(int bin) const { return &reaches_[static_cast<std::size_t>(bin) * nodes_.size()]; }
+  void prefetch(std::uint32_t child) const;
+  void find_frontier(const Query& query, Frontier& frontier) const;
+  void fill_reaches(int bin, Frontier& frontier) const;
+  double least(Point p, Hint& hint, Frontier* frontier) const;
   std::vector<double> sample_sizes() const;
 
   std::vector<SourceTerm> terms_;      // in the order of the leaves
   std::vector<std::uint32_t> number_;  // as given
   std::vector<Node> nodes_;
-  std::vector<Reach> reaches_;
+  std::vector<Reach> reaches_;  // (kBins, nodes): a search stays with few bins
   Point centre_;
-  double extent_ = 1;
+  double extent_ = 1, per_extent_ = 1;
   alignas(64) double edge_[kBins] = {};  // sizes, ascending; the last is infinite
 };
 

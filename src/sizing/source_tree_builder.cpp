@@ -2,6 +2,7 @@
 #include "sizing/source_tree_builder.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,12 @@ constexpr int kMedianDepth = 24;      // of nodes; below it clusters are halved 
 float rounded_up(double value) {
   const float f = static_cast<float>(value);
   return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+
+/// The upper half of the least such number that is not below `value`.
+std::uint16_t upper_half(double value) {
+  const auto bits = std::bit_cast<std::uint32_t>(rounded_up(value));
+  return static_cast<std::uint16_t>((bits >> 16) + ((bits & 0xffff) != 0 ? 1 : 0));
 }
 
 }  // namespace
@@ -62,7 +69,7 @@ SourceTreeBuilder::SourceTreeBuilder(const std::vector<SourceTerm>& terms, Point
 }
 
 void SourceTreeBuilder::choose_first_sizes() {
-  for (std::size_t k = 0; k < kBins; ++k) edge_[k] = smallest_ * std::pow(1.3, static_cast<double>(k));
+  for (std::size_t k = 0; k < kBins; ++k) edge_[k] = smallest_ * std::pow(1.15, static_cast<double>(k));
   edge_.back() = std::numeric_limits<double>::infinity();
 }
 
@@ -95,8 +102,12 @@ void SourceTreeBuilder::set_tables() {
     for (std::size_t s = 0; s < kSamples; ++s) item.reach[s] = reach_[i * kBins + s * (kBins - 5) / kSamples + 1];
     const Box& box = term.shape.box();
     for (int k = 0; k < 3; ++k) {
-      item.low[k] = static_cast<float>((box.low[k] - centre_[k]) / extent_) - kMargin;
-      item.high[k] = static_cast<float>((box.high[k] - centre_[k]) / extent_) + kMargin;
+      // Sides of moved and round shapes, and distances to them, round with the size of the coordinates.
+      const double rounding =
+          16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(box.low[k]), std::abs(box.high[k])) / extent_;
+      const float margin = kMargin + static_cast<float>(rounding);
+      item.low[k] = static_cast<float>((box.low[k] - centre_[k]) / extent_) - margin;
+      item.high[k] = static_cast<float>((box.high[k] - centre_[k]) / extent_) + margin;
       item.key[k] = 0.5f * (item.low[k] + item.high[k]);
     }
     item.key[3] = static_cast<float>(first);
@@ -132,7 +143,8 @@ void SourceTreeBuilder::set_child(Node& node, std::size_t lane, const Cluster& c
   }
   for (int k = 0; k < 3; ++k) node.low[k][lane] = bounds.low[k], node.high[k][lane] = bounds.high[k];
   for (std::size_t b = 0; b < kBins; ++b)
-    node.reach[b][lane] = reach[b] < 0 ? -1.0f : rounded_up(double(reach[b]) * double(reach[b]));
+    node.reach[b][lane] =
+        reach[b] < 0 ? std::uint16_t(0) : upper_half(std::min(3e38, double(reach[b]) * double(reach[b])));
 }
 
 std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Context& context) {
@@ -155,7 +167,6 @@ std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Context& con
   const std::size_t self = nodes_.size();
   nodes_.emplace_back();
   Node node{};
-  for (std::size_t b = 0; b < kBins; ++b) std::fill(node.reach[b], node.reach[b] + kWidth, -1.0f);
   for (std::size_t lane = 0; lane < parts.size(); ++lane) {
     set_child(node, lane, parts[lane]);
     node.child[lane] =

@@ -12,11 +12,11 @@ namespace delfront {
 /// @brief Makes the nodes of a SourceTree, see there.
 class SourceTreeBuilder {
  public:
-  static constexpr std::size_t kWidth = 8, kBins = 32;
+  static constexpr std::size_t kWidth = SourceTree::kWidth, kBins = SourceTree::kBins;
   static constexpr std::uint32_t kTermBit = 0x80000000u;
   struct Node {
     float low[3][kWidth], high[3][kWidth];
-    float reach[kBins][kWidth];  // squared; negative: never
+    std::uint16_t reach[kBins][kWidth];  // as SourceTree keeps them
     std::uint32_t child[kWidth];
   };
 

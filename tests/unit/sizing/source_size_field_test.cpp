@@ -103,6 +103,23 @@ TEST(SourceSizeField, S5_search_and_order_change_no_bit) {
   }
 }
 
+TEST(SourceSizeField, S5_runs_of_near_places_change_no_bit) {
+  Random random;
+  for (const int n : {3, 40, 4000})
+    for (const double growth : {kInfinity, 1.2}) {
+      const std::vector<SizeSource> sources = random_sources(n, Kinds::all, random);
+      const auto tree = build(sources, growth), scan = build(sources, growth, SourceSearch::scan);
+      for (const double step : {1e-9, 1e-3, 0.03, 1.0}) {
+        std::vector<Point> at = {random.point(1)};
+        while (at.size() < 400) at.push_back(at.back() + step * random.point(1));
+        std::vector<double> size(at.size()), again(at.size());
+        tree->sizes(at, size);
+        scan->sizes(at, again);
+        ASSERT_EQ(size, again) << "seed " << kSeed << " n " << n << " step " << step;
+      }
+    }
+}
+
 TEST(SourceSizeField, S5_clusters_of_many_scales_and_equal_sources) {
   Random random;
   std::vector<SizeSource> sources = random_sources(500, Kinds::simplices, random);
@@ -120,6 +137,22 @@ TEST(SourceSizeField, S5_clusters_of_many_scales_and_equal_sources) {
     ASSERT_EQ(tree->size(p), scan->size(p)) << "seed " << kSeed << " place " << i;
   }
   EXPECT_EQ(tree->size({1e200, 0, 0}), scan->size({1e200, 0, 0}));
+}
+
+TEST(SourceSizeField, S5_small_bodies_far_from_the_origin) {
+  Random random;
+  std::vector<SizeSource> sources;
+  for (int i = 0; i < 300; ++i) {
+    SizeLaw law;
+    law.delta0 = 1e-5 * random.between(1, 2);
+    law.r1 = 1e-3;
+    sources.push_back({Ball{Point{1e9, -1e9, 1e9} + 1e-3 * random.point(1), 1e-4}, law, {}, {}, ""});
+  }
+  const auto tree = build(sources), scan = build(sources, kInfinity, SourceSearch::scan);
+  for (int i = 0; i < 1000; ++i) {
+    const Point p = Point{1e9, -1e9, 1e9} + 3e-3 * random.point(1);
+    ASSERT_EQ(tree->size(p), scan->size(p)) << "seed " << kSeed << " place " << i;
+  }
 }
 
 TEST(SourceSizeField, S5_lower_bounds_are_never_violated) {
@@ -262,6 +295,7 @@ std::vector<SizeSource> stretched_sources(int n, Random& random) {
     const Motion turn{{}, {}, random.point(1), random.between(0, 360)};
     sources[i].stretching = Stretching{random.between(0.2, 5), random.between(0.2, 5), turn.turned(1, {1, 0, 0}),
                                        turn.turned(1, {0, 1, 0})};
+    if (i % 4 == 1) sources[i].stretching->s1 = sources[i].stretching->s2 = 1;
     sources[i].law.delta0 = 0.01 * random.between(1, 2);
   }
   return sources;
@@ -319,6 +353,8 @@ TEST(SourceSizeField, S4_metrics_respect_every_source_and_skip_only_what_cannot_
 TEST(SourceSizeField, S4_lower_bounds_hold_with_stretchings) {
   Random random;
   const auto field = build(stretched_sources(40, random));
+  EXPECT_GT(field->lower_bound(Box{}), 0);
+  EXPECT_LE(field->lower_bound(Box{}), 0.02);
   for (int b = 0; b < 200; ++b) {
     const Point centre = random.point(1.5);
     const Point half = std::pow(10, random.between(-4, 0)) * Point{1, 1, 1};
