@@ -72,6 +72,9 @@ std::vector<double> sensor_values(const Problem& problem, const std::string& sen
     throw UsageError(fmt::format("{}: the field '{}' has {} components, counted from 0; there is no {}", problem.name,
                                  name, field.components, component));
   const auto n = static_cast<std::size_t>(field.components);
+  if (field.values.size() != n * problem.grid.points.size())
+    throw InputError(fmt::format("{}: the field '{}' has {} numbers for {} nodes of {} components", problem.name, name,
+                                 field.values.size(), problem.grid.points.size(), n));
   std::vector<double> values;
   for (std::size_t node = 0; node < problem.grid.points.size(); ++node) {
     const double* v = field.values.data() + node * n;
