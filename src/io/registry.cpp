@@ -119,14 +119,15 @@ namespace {
 
 /// A Medit solution of the same stem stands beside its mesh.
 void read_solution_beside(const std::string& path, Mesh& mesh, Context& context) {
-  const std::filesystem::path stem = std::filesystem::path(path).replace_extension();
-  const std::string text = stem.string() + ".sol", binary = stem.string() + ".solb";
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(text, ignored)) {
-    const FileBytes bytes(text);
-    read_sol(bytes.view(), text, mesh, context);
-  } else if (std::filesystem::is_regular_file(binary, ignored)) {
-    context.warn(fmt::format("{}: binary Medit solutions are not read; save it as ASCII .sol", binary));
+  for (const char* extension : {".sol", ".solb"}) {
+    const std::string beside = std::filesystem::path(path).replace_extension(extension).string();
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(beside, ignored)) continue;
+    const FileBytes bytes(beside);
+    constexpr std::string_view kAscii = "MeshVersionFormatted";
+    if (bytes.view().substr(0, 1000).find(kAscii) != std::string_view::npos || std::string_view(extension) == ".sol")
+      return read_sol(bytes.view(), beside, mesh, context);
+    context.warn(fmt::format("{}: binary Medit solutions are not read; save it as ASCII .sol", beside));
   }
 }
 

@@ -32,7 +32,7 @@ constexpr std::uint32_t kNone = SimplexGrid::kNone;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kInside = 1e-10;          // barycentric coordinates this near to 0 are rounding
 constexpr double kMostInside = 1e-6;       // of slivers
-constexpr int kMaxSteps = 64;              // of a walk, then the tree is quicker
+constexpr int kMaxSteps = 8;               // of a walk, then the tree is quicker
 constexpr double kBoundSlack = 1 - 1e-12;  // exp, log and cones round
 constexpr double kConvex = 1e-9;           // of the grid's size: how far a face may lie under its neighbour's plane
 

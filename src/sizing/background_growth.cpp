@@ -117,28 +117,10 @@ bool covers(const Metric& m, const Metric& other) {
          d.yy * d.zz >= d.yz * d.yz;
 }
 
-struct Edges {
-  std::vector<std::uint32_t> offsets, ends;
-  Edges(const SimplexGrid& grid) : offsets(grid.points.size() + 1, 0) {
-    const std::vector<std::array<std::uint32_t, 2>> edges = edges_of(grid);
-    for (const auto& [a, b] : edges) {
-      ++offsets[a + 1];
-      ++offsets[b + 1];
-    }
-    for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
-    ends.resize(offsets.back());
-    std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
-    for (const auto& [a, b] : edges) {
-      ends[next[a]++] = b;
-      ends[next[b]++] = a;
-    }
-  }
-};
-
 }  // namespace
 
 std::size_t limit_metric_growth(const SimplexGrid& grid, double slope, std::vector<Metric>& metric, Context& context) {
-  const Edges edges(grid);
+  const VertexNeighbours neighbours(grid);
   const std::vector<char> used = used_vertices(grid);
   std::vector<double> least(metric.size());
   std::vector<char> is_changed(metric.size(), 0);
@@ -157,8 +139,7 @@ std::size_t limit_metric_growth(const SimplexGrid& grid, double slope, std::vect
     pending[node] = 0;
     if (++done % kCheckEvery == 0) context.check_limits();
     const MetricAxes axes = metric_axes(metric[node]);
-    for (std::uint32_t i = edges.offsets[node]; i < edges.offsets[node + 1]; ++i) {
-      const std::uint32_t other = edges.ends[i];
+    for (const std::uint32_t other : neighbours[node]) {
       Metric allowed = grown(axes, slope * distance(grid.points[node], grid.points[other]));
       if (grid.dimension == 2) allowed = plane_metric(allowed);
       if (covers(metric[other], allowed)) continue;

@@ -277,6 +277,21 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const SimplexGrid& grid) {
   return edges;
 }
 
+VertexNeighbours::VertexNeighbours(const SimplexGrid& grid) : offsets(grid.points.size() + 1, 0) {
+  const std::vector<std::array<std::uint32_t, 2>> edges = edges_of(grid);
+  for (const auto& [a, b] : edges) {
+    ++offsets[a + 1];
+    ++offsets[b + 1];
+  }
+  for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+  ends.resize(offsets.back());
+  std::vector<std::uint32_t> next(offsets.begin(), offsets.end() - 1);
+  for (const auto& [a, b] : edges) {
+    ends[next[a]++] = b;
+    ends[next[b]++] = a;
+  }
+}
+
 OnFace nearest_on_face(Point p, Point a, Point b, Point c) {
   const Point ab = b - a, ac = c - a, ap = p - a, normal = cross(ab, ac);
   const double squared = squared_length(normal);

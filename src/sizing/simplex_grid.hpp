@@ -53,6 +53,15 @@ struct VertexCells {
 };
 VertexCells vertex_to_cells(const SimplexGrid& grid);
 
+/// @brief Vertices joined to each by an edge: offsets and values.
+struct VertexNeighbours {
+  std::vector<std::uint32_t> offsets, ends;
+  explicit VertexNeighbours(const SimplexGrid& grid);
+  std::span<const std::uint32_t> operator[](std::size_t vertex) const {
+    return {ends.data() + offsets[vertex], offsets[vertex + 1] - offsets[vertex]};
+  }
+};
+
 /// @brief Every edge once, smaller vertex first, ascending.
 std::vector<std::array<std::uint32_t, 2>> edges_of(const SimplexGrid& grid);
 

@@ -228,6 +228,20 @@ TEST(NodeFields, medit_solution_beside_its_mesh) {
   expect_mentions(message_of_reading<InputError>(mesh), {"a.sol", "value of a solution"});
 }
 
+TEST(NodeFields, medit_binary_solution_is_said_to_be_left_out) {
+  const std::filesystem::path mesh = write_text("b.mesh", kTet);
+  const auto write_beside = [&](const std::string& text) {
+    std::ofstream(mesh.parent_path() / "b.solb", std::ios::binary) << text;
+  };
+  Recorder recorder;
+  write_beside(std::string("\1\0\0\0\2\0\0\0", 8));
+  EXPECT_TRUE(read(mesh, recorder).fields.empty());
+  ASSERT_EQ(recorder.warnings.size(), 1u);
+  expect_mentions(recorder.warnings[0], {"b.solb", "binary", "ASCII .sol"});
+  write_beside(std::string(kSolHead) + "4\n1 1\n.1\n.2\n.3\n.4\nEnd\n");
+  EXPECT_EQ(field_of(read(mesh, recorder), "sol").values, (std::vector<double>{.1, .2, .3, .4}));
+}
+
 TEST(NodeFields, medit_plane_metric) {
   const std::filesystem::path mesh = write_text(
       "p.mesh", "MeshVersionFormatted 2\nDimension 2\nVertices\n3\n0 0 0\n1 0 0\n0 1 0\nTriangles\n1\n1 2 3 0\nEnd\n");
