@@ -124,6 +124,18 @@ def write_fields(folder, dimension, suffix):
     meshio.Mesh(points, [(kind, cells)], {"Mach": mach}).write(os.path.join(folder, f"flow{suffix}.vtu"))
 
 
+def write_many_sources(path, count):
+    """A job with that many sources along a spiral: what takes a list in the job file."""
+    t = np.linspace(0, 1, count)
+    at = np.c_[-0.5 + 0.3 * np.cos(12 * t), 0.3 * np.sin(12 * t), 1.6 * t - 0.8]
+    with open(path, "w", encoding="ascii") as job:
+        job.write(f"# S5: {count} sources along a spiral; written by make_inputs.py.\n")
+        job.write('[input]\nfiles = ["room.stl"]\n[size]\ngrowth = 1.25\n')
+        for p in at:
+            job.write('[[size.source]]\ntype = "point"\n'
+                      f"at = [{p[0]:.6f}, {p[1]:.6f}, {p[2]:.6f}]\ndelta0 = 0.03\nr1 = 0.3\n")
+
+
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
     os.makedirs(folder, exist_ok=True)
@@ -134,6 +146,7 @@ def main():
     write_stl(os.path.join(folder, "wing.stl"), {"wing": wing})
     points, triangles = icosphere(2)
     write_stl(os.path.join(folder, "blob.stl"), {"blob": ([-0.4, 0, 0.4] + 0.3 * points)[triangles]})
+    write_many_sources(os.path.join(folder, "s05_many_sources.toml"), 2000)
     write_section(os.path.join(folder, "section.poly"))
     write_fields(folder, 3, "")
     write_fields(folder, 2, "_2d")

@@ -125,13 +125,21 @@ struct SolutionFileOptions {
   std::string indicator = "hessian";  ///< hessian error
   double norm = 2;                    ///< p of L^p
   double complexity = 0;              ///< wanted; 0: not set
-  double hgrad = 1.5;
+  double hgrad = 1.5;                 ///< growth of what it asks for
+  double error = 0.1;                 ///< wanted value of the error indicator, 0 to 1
+  bool stretched = false;             ///< metrics; methods without stretched cells take their least size
 };
 
 /// @brief Cells across gaps and between lines that come close (S10).
 struct GapOptions {
   double cells = 0;  ///< 0: not asked for
   std::optional<Length> hmin;
+};
+
+/// @brief All that is asked for, kept on a grid of tetrahedra (triangles in the plane) that is refined to it (S8).
+struct AdaptiveGridOptions {
+  std::size_t cells = 0;      ///< along the longest side at first; 0: not asked for
+  double refine_above = 1.5;  ///< a cell is refined whose least size is more than this times one wanted in it
 };
 
 struct SizeOptions {
@@ -147,6 +155,7 @@ struct SizeOptions {
   ExpressionOptions expression;
   BackgroundFileOptions background;
   SolutionFileOptions solution;
+  AdaptiveGridOptions adaptive;
   std::vector<SourceOptions> sources;
   std::vector<SizeBoxOptions> boxes;
   std::vector<SizeOnOptions> on;

@@ -51,7 +51,8 @@ struct SolutionOptions {
   double noise = 0.2;         ///< `error`: filter c_n; more of it ignores smaller ripples
   double max_refinement = 4;  ///< `error`: no size falls by more than this factor in one step
   double max_coarsening = 2;  ///< `error`: nor rises
-  bool is_stretched = true;   ///< `error`: sizes of their own along the principal directions
+
+  bool is_stretched = true;  ///< sizes of their own along the principal directions; else one size, by the worst of them
 
   double hmin = 0, hmax = std::numeric_limits<double>::infinity();
   double max_aspect = 1000;                                ///< of the sizes at one place

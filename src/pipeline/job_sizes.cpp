@@ -4,12 +4,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "delfront/adaptive_background.hpp"
 #include "delfront/background.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
 #include "delfront/size_expression.hpp"
+#include "delfront/solution_metric.hpp"
 #include "pipeline/option_table.hpp"
 #include "sizing/asked_sizes.hpp"
+#include "sizing/size_octree.hpp"
 
 namespace delfront {
 
@@ -94,6 +100,55 @@ FieldPointer build_background_part(const Options& options, const Model& model, c
   }
 }
 
+FieldPointer build_solution_part(const Options& options, const Box& domain, Context& context) {
+  const SolutionFileOptions& asked = options.size.solution;
+  if (asked.file.empty()) return nullptr;
+  SolutionOptions wish;
+  wish.sensors = asked.sensor;
+  wish.indicator = asked.indicator == "error" ? Indicator::error : Indicator::hessian;
+  wish.norm = asked.norm;
+  wish.complexity = asked.complexity;
+  wish.wanted_error = asked.error;
+  wish.is_stretched = asked.stretched;
+  if (options.size.hmin) wish.hmin = options.size.hmin->value;
+  if (options.size.hmax) wish.hmax = options.size.hmax->value;
+  if (asked.stretched) wish.hgrad = asked.hgrad;
+  const double growth = std::min(asked.hgrad, options.size.growth.value_or(asked.hgrad));
+  try {
+    const BackgroundGrid grid = background_from_solution(read_mesh(asked.file, context), asked.file, wish, context);
+    std::shared_ptr<const BackgroundField> field = build_background_size_field(grid, {.growth = growth}, context);
+    field->require_overlap(domain);
+    return field;
+  } catch (const UsageError& e) {
+    throw usage_error(options, "size.solution.file", e.what());
+  } catch (const InputError& e) {
+    throw InputError(place_of_key(options, "size.solution.file") + e.what(), e.places);
+  }
+}
+
+/// The field at the nodes of a grid that is refined to it (S8): points are those of an octree as fine as cells would
+/// be.
+FieldPointer keep_on_grid(const Options& options, const SizeField& field, const Box& domain, double growth,
+                          Context& context) {
+  const StageTimer timer(context, "sizes");
+  SizeOctreeOptions how;
+  how.sizes_per_leaf = 1;
+  const SizeOctree octree(field, domain, how, context);
+  std::vector<Point> points;
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < octree.corners().size(); ++i) {
+    if (!std::isfinite(octree.corner_sizes()[i])) continue;
+    points.push_back(octree.corners()[i]);
+    sizes.push_back(octree.corner_sizes()[i]);
+  }
+  const double largest = std::min(domain.diagonal(), field.largest());
+  AdaptiveBackground grid(domain, options.size.adaptive.cells, largest, context);
+  const AdaptReport report =
+      grid.adapt(points, sizes, {.growth = growth, .refine_above = options.size.adaptive.refine_above}, context);
+  if (!report.is_converged) context.warn("size.adaptive: the grid of sizes has as many cells as it may have");
+  return build_background_size_field(grid.grid(context), {.growth = growth}, context);
+}
+
 }  // namespace
 
 FieldPointer build_job_size_field(const Options& options, const Model& model, const Box& domain, Context& context) {
@@ -103,10 +158,16 @@ FieldPointer build_job_size_field(const Options& options, const Model& model, co
   if (options.size.background.combine != "alone" || !parts[0]) {
     parts.push_back(build_source_part(options, model, growth, context));
     parts.push_back(build_expression_part(options, model, domain, growth, context));
+    parts.push_back(build_solution_part(options, domain, context));
   }
   std::erase(parts, nullptr);
   if (parts.empty()) return nullptr;
-  return combine_size_fields(std::move(parts), 0, std::numeric_limits<double>::infinity());
+  FieldPointer field = combine_size_fields(std::move(parts), 0, std::numeric_limits<double>::infinity());
+  if (!field->is_isotropic())
+    context.warn(
+        "stretched cells are asked for: the methods of this version make none, cells get the least of the "
+        "sizes in all directions");
+  return options.size.adaptive.cells > 0 ? keep_on_grid(options, *field, domain, growth, context) : field;
 }
 
 Model model_of(const PlanarDomain& domain) {

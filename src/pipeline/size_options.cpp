@@ -123,11 +123,23 @@ void add_grid_rows(std::vector<OptionRow>& t) {
       "size.solution.norm", "", "", "p of the L^p norm of the error", "a number of 1 or more", 1, kHuge,
       [](auto& o) -> auto& { return o.size.solution.norm; }));
   t.push_back(wish_row(
-      "size.solution.complexity", "", "N", "wanted complexity: about the number of points", "a number of 1 or more", 1,
-      1e15, [](auto& o) -> auto& { return o.size.solution.complexity; }));
+      "size.solution.complexity", "", "N", "wanted complexity: an eighth of the number of tetrahedra",
+      "a number of 1 or more", 1, 1e15, [](auto& o) -> auto& { return o.size.solution.complexity; }));
+  t.push_back(number_row(
+      "size.solution.error", "", "", "indicator = error: its wanted value", "a number over 0, at most 1", 1e-12, 1,
+      [](auto& o) -> auto& { return o.size.solution.error; }));
+  t.push_back(boolean_row(
+      "size.solution.stretched", "metrics; methods without stretched cells take their least size",
+      [](auto& o) -> auto& { return o.size.solution.stretched; }));
   t.push_back(number_row(
       "size.solution.hgrad", "", "", "growth of the metric", "a number over 1, at most 10", 1 + 1e-9, 10,
       [](auto& o) -> auto& { return o.size.solution.hgrad; }));
+  t.push_back(count_row(
+      "size.adaptive.cells", "", "keep sizes on a grid refined to them, at first with this many cells a side; 0: no",
+      "a whole number", [](auto& o) -> auto& { return o.size.adaptive.cells; }));
+  t.push_back(number_row(
+      "size.adaptive.refine_above", "", "", "its cells are refined where sizes differ by this factor",
+      "a number over 1, at most 10", 1.05, 10, [](auto& o) -> auto& { return o.size.adaptive.refine_above; }));
 }
 
 // --- entries of [[size.source]] ----------------------------------------------------------------------------------

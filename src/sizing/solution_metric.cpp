@@ -130,10 +130,11 @@ std::vector<Metric> hessian_metric(const Problem& problem, const std::string& se
   std::vector<Metric> metric(values.size());
   for (std::size_t node = 0; node < values.size(); ++node) {
     if (!problem.used[node]) continue;
-    double det = 1;
+    double det = 1, greatest = 0;
+    for (double value : axes[node].value) greatest = std::max(greatest, std::abs(value));
     for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
       double& value = axes[node].value[k];
-      value = std::max(std::abs(value) / most, kLeastCurvature);
+      value = std::max((problem.options.is_stretched ? std::abs(value) : greatest) / most, kLeastCurvature);
       det *= value;
     }
     for (double& value : axes[node].value) value *= std::pow(det, power);
