@@ -25,6 +25,11 @@ using FieldPointer = std::shared_ptr<const SizeField>;
 
 constexpr double kMuchOutside = 0.1;
 
+double hmin_of(const Options& options) { return options.size.hmin ? options.size.hmin->value : 0; }
+double hmax_of(const Options& options) {
+  return options.size.hmax ? options.size.hmax->value : std::numeric_limits<double>::infinity();
+}
+
 FieldPointer build_source_part(const Options& options, const Model& model, double growth, Context& context) {
   std::vector<SizeSource> sources = job_sources(options, context);
   add_geometry_sources(options, model, sources, context);
@@ -58,7 +63,10 @@ FieldPointer build_expression_part(const Options& options, const Model& model, c
       if (!text.empty())
         for (const std::string& name : distances_in(text))
           sizes.names.distances[name] = build_distance_field(named_part(model, name));
-    return limit_growth(build_expression_size_field(sizes, context), domain, growth, context);
+    // Clamped first: where a formula falls towards 0, growth need not be seen to below hmin.
+    FieldPointer clamped =
+        combine_size_fields({build_expression_size_field(sizes, context)}, hmin_of(options), hmax_of(options));
+    return limit_growth(std::move(clamped), domain, growth, context);
   } catch (const UsageError& e) {
     throw usage_error(options, "size.expression.delta", e.what());
   } catch (const InputError& e) {  // the formula is at fault, not the input
@@ -110,8 +118,8 @@ FieldPointer build_solution_part(const Options& options, const Box& domain, Cont
   wish.complexity = asked.complexity;
   wish.wanted_error = asked.error;
   wish.is_stretched = asked.stretched;
-  if (options.size.hmin) wish.hmin = options.size.hmin->value;
-  if (options.size.hmax) wish.hmax = options.size.hmax->value;
+  wish.hmin = hmin_of(options);
+  wish.hmax = hmax_of(options);
   if (asked.stretched) wish.hgrad = asked.hgrad;
   const double growth = std::min(asked.hgrad, options.size.growth.value_or(asked.hgrad));
   try {
