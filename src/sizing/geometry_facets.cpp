@@ -150,7 +150,6 @@ void check_bounds(const std::string& word, double hmin, double hmax) {
 }
 
 double usual_hmin(const Facets& facets, double hmin) {
-  constexpr double kUsualShare = 1e-3;
   return hmin > 0 ? hmin : kUsualShare * facets.diagonal();
 }
 
