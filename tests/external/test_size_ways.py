@@ -23,11 +23,6 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 EXAMPLES = os.path.join(HERE, "..", "..", "examples", "sizes")
 KINDS = {"tetra": [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)], "triangle": [(0, 1), (1, 2), (2, 0)],
          "line": [(0, 1)]}
-NOT_IN_THE_PLANE = {  # each with its reason
-    "s09_curvature": "curvature is that of surfaces",
-    "s10_gaps": "gaps are those between faces",
-    "s11_together": "as s09 and s10",
-}
 
 
 def edges_of(mesh, kind):
@@ -144,9 +139,6 @@ def main():
             if only and name not in only:
                 continue
             for dimension in (3, 2):
-                if dimension == 2 and name in NOT_IN_THE_PLANE:
-                    print(f"{name:16} 2-D not tried: {NOT_IN_THE_PLANE[name]}")
-                    continue
                 for reason in check_grid(delfront, folder, name, dimension, rows):
                     print(f"{name} {dimension}-D FAILED: {reason}", flush=True)
                     failed += 1
