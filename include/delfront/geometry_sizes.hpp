@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -73,6 +74,9 @@ double size_on_radius(double r, const CurvatureSizes& wish);
 /// The curvature of a triangle follows from the normals at its corners and from those around: normals are means over
 /// the triangles that meet there without a crease, by angle, so that it does not matter how flat facets are cut into
 /// triangles. Creases are edges that turn by more than model.feature_angle, or with one or more than two triangles.
+///
+/// Lines in the plane (a model of curves without triangles): the circle through a vertex and its neighbours, at
+/// vertices between two segments that turn by no more than model.feature_angle.
 /// @throws UsageError  n < 1, an angle outside of (0, 180), a deviation or bounds that are not positive, hmin > hmax
 /// @par Cost  O(n)
 /// @par Source  Löhner (2008), 3.2.8, eq. 3.20; tensor fit after Rusinkiewicz (2004)
@@ -103,11 +107,18 @@ struct GapSizes {
   };
   Side side = Side::behind;
   double facing_deg = 45;  ///< faces whose normals are farther from opposite are no gap
+  /// Whether a place lies in what is gridded: asked of the middle of each gap, which counts only then. Called from
+  /// several threads at once. Empty: all places do. `find_line_gap_sizes` does not ask.
+  std::function<bool(Point)> is_kept = {};
 };
 
 /// @brief From places on each triangle, rays along its normal and 30 degrees round it; the first face met, where it
 /// faces the triangle, is the other side of a gap, at its nearest point. Triangles are cut where the gap changes.
 /// Sources are the (cut) triangles and segments across the gap.
+///
+/// Lines in the plane (a model of curves without triangles): the same from places on each segment, to both sides of it
+/// whatever `side` says; segments that share an end are no gap. Sources are the (cut) segments and what lies between
+/// them and the other side.
 /// @throws UsageError  options out of range
 /// @par Cost  O(n log n) times the pieces cut
 GeometrySources find_gap_sizes(const Model& model, const GapSizes& wish, Context& context);
@@ -125,6 +136,7 @@ struct AutomaticSizes {
   std::vector<NamedSize> named;
   double hmin = 0;  ///< 0: 1e-3 of the diagonal of the surface's box
   GapSizes::Side side = GapSizes::Side::behind;
+  std::function<bool(Point)> is_kept = {};  ///< as GapSizes::is_kept
 };
 
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -83,11 +84,12 @@ struct JobResult {
 /// @param options  lengths in model units
 /// @param model    whose names sizes may be asked on
 /// @param domain   box of all that will be gridded
+/// @param is_kept  whether a place will be gridded (as GapSizes::is_kept); empty: not known
 /// @return null where nothing of the kind is asked for
 /// @throws UsageError  an entry that makes no sense: its place in the job file, what is wrong, what is allowed
 /// @throws InputError  a file that cannot be read or has bad sizes
 std::shared_ptr<const SizeField> build_job_size_field(const Options& options, const Model& model, const Box& domain,
-                                                      Context& context);
+                                                      Context& context, const std::function<bool(Point)>& is_kept = {});
 
 /// @brief A whole job: read, check, enclose, grid, improve, gates, write, report.
 ///

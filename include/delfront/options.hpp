@@ -140,6 +140,7 @@ struct GapOptions {
 struct AdaptiveGridOptions {
   std::size_t cells = 0;      ///< along the longest side at first; 0: not asked for
   double refine_above = 1.5;  ///< a cell is refined whose least size is more than this times one wanted in it
+  bool smooth = false;        ///< sizes on it are smoothed, never above what is asked for
 };
 
 struct SizeOptions {

@@ -77,7 +77,8 @@ struct SolutionMetric {
 SolutionMetric build_solution_metric(const Mesh& mesh, const std::string& name, const SolutionOptions& options,
                                      Context& context);
 
-/// @brief The same as a background grid: the mesh with the metrics as its node field "metric" (6 components).
+/// @brief The same as a background grid: the mesh with the metrics as its node field "metric" (6 components), or,
+/// where they are not stretched, with the sizes as its node field "size".
 BackgroundGrid background_from_solution(Mesh mesh, const std::string& name, const SolutionOptions& options,
                                         Context& context);
 

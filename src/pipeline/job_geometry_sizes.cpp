@@ -51,19 +51,39 @@ GapSizes::Side gridded_side(const DomainOptions& domain) {
   return domain.keep.empty() && domain.keep_points.empty() ? GapSizes::Side::behind : GapSizes::Side::both;
 }
 
-GapSizes gap_wish(const Options& options, const GapOptions& asked, double usual_cells) {
+GapSizes gap_wish(const Options& options, const GapOptions& asked, double usual_cells,
+                  const std::function<bool(Point)>& is_kept = {}) {
   GapSizes wish;
   wish.cells = asked.cells > 0 ? asked.cells : usual_cells;
   if (options.size.hmin) wish.hmin = options.size.hmin->value;
   if (asked.hmin) wish.hmin = asked.hmin->value;
   wish.side = gridded_side(options.domain);
+  wish.is_kept = is_kept;
   return wish;
+}
+
+/// The surface is kept as given: where it does not hold what is asked of surfaces, that is said (S13).
+void warn_of_coarse_facets(const Model& model, const CurvatureSizes& wish, Context& context) {
+  SurfaceLimits limits;
+  if (wish.angle_deg) limits.angle_deg = *wish.angle_deg;
+  if (wish.cells_per_turn) limits.angle_deg = std::min(limits.angle_deg, 360 / *wish.cells_per_turn);
+  if (wish.deviation) limits.deviation = *wish.deviation;
+  const SurfaceAccuracy found = measure_surface_accuracy(model, limits, context);
+  const auto warn = [&](const SurfaceAccuracy::Worst& worst, const char* what, double limit) {
+    if (worst.num_beyond == 0) return;
+    context.warn(
+        fmt::format("{} {} {:.4g}, the worst {:.4g} at {:g} {:g} {:g}: the surface is kept as given; finer "
+                    "facets there would hold it",
+                    worst.num_beyond, what, limit, worst.value, worst.at.x, worst.at.y, worst.at.z));
+  };
+  warn(found.angle_deg, "edges of the surface turn by more than the asked degrees,", limits.angle_deg);
+  warn(found.deviation, "facets are farther from the surface they stand for than", limits.deviation);
 }
 
 }  // namespace
 
-void add_geometry_sources(const Options& options, const Model& model, std::vector<SizeSource>& sources,
-                          Context& context) {
+void add_geometry_sources(const Options& options, const Model& model, const std::function<bool(Point)>& is_kept,
+                          std::vector<SizeSource>& sources, Context& context) {
   const SizeOptions& size = options.size;
   for (const SizeOnOptions& on : size.on) {
     const std::string key = "size.on." + toml_key(on.name);
@@ -78,14 +98,17 @@ void add_geometry_sources(const Options& options, const Model& model, std::vecto
   if (!asks_curvature && !asks_gap && !asks_lines) return;
   const StageTimer timer(context, "sizes");
   Model turned = model;  // sides are told by normals
+  turned.feature_angle = options.input.feature_angle;
   if (!turned.triangles.empty()) orient_shells(turned, context);
   if (asks_curvature)
     add_found(options, "size.curvature", sources, context,
               [&] { return find_curvature_sizes(turned, curvature, context); });
+  if (asks_curvature && !turned.triangles.empty()) warn_of_coarse_facets(turned, curvature, context);
   const AutomaticSizes usual;
   if (asks_gap)
-    add_found(options, "size.gap", sources, context,
-              [&] { return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells.value()), context); });
+    add_found(options, "size.gap", sources, context, [&] {
+      return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells.value(), is_kept), context);
+    });
   if (asks_lines)
     add_found(options, "size.proximity", sources, context, [&] {
       return find_line_gap_sizes(turned, gap_wish(options, size.proximity, usual.line_cells.value()), context);

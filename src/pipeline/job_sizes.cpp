@@ -14,8 +14,10 @@
 #include "delfront/size_expression.hpp"
 #include "delfront/solution_metric.hpp"
 #include "pipeline/option_table.hpp"
+#include "planar/prepare.hpp"
 #include "sizing/asked_sizes.hpp"
 #include "sizing/size_octree.hpp"
+#include "spatial/bvh.hpp"
 
 namespace delfront {
 
@@ -25,9 +27,15 @@ using FieldPointer = std::shared_ptr<const SizeField>;
 
 constexpr double kMuchOutside = 0.1;
 
-FieldPointer build_source_part(const Options& options, const Model& model, double growth, Context& context) {
+double hmin_of(const Options& options) { return options.size.hmin ? options.size.hmin->value : 0; }
+double hmax_of(const Options& options) {
+  return options.size.hmax ? options.size.hmax->value : std::numeric_limits<double>::infinity();
+}
+
+FieldPointer build_source_part(const Options& options, const Model& model, double growth,
+                               const std::function<bool(Point)>& is_kept, Context& context) {
   std::vector<SizeSource> sources = job_sources(options, context);
-  add_geometry_sources(options, model, sources, context);
+  add_geometry_sources(options, model, is_kept, sources, context);
   if (sources.empty()) return nullptr;
   return build_source_size_field(std::move(sources), {.growth = growth, .time = options.size.time}, context);
 }
@@ -58,7 +66,10 @@ FieldPointer build_expression_part(const Options& options, const Model& model, c
       if (!text.empty())
         for (const std::string& name : distances_in(text))
           sizes.names.distances[name] = build_distance_field(named_part(model, name));
-    return limit_growth(build_expression_size_field(sizes, context), domain, growth, context);
+    // Clamped first: where a formula falls towards 0, growth need not be seen to below hmin.
+    FieldPointer clamped =
+        combine_size_fields({build_expression_size_field(sizes, context)}, hmin_of(options), hmax_of(options));
+    return limit_growth(std::move(clamped), domain, growth, context);
   } catch (const UsageError& e) {
     throw usage_error(options, "size.expression.delta", e.what());
   } catch (const InputError& e) {  // the formula is at fault, not the input
@@ -110,8 +121,8 @@ FieldPointer build_solution_part(const Options& options, const Box& domain, Cont
   wish.complexity = asked.complexity;
   wish.wanted_error = asked.error;
   wish.is_stretched = asked.stretched;
-  if (options.size.hmin) wish.hmin = options.size.hmin->value;
-  if (options.size.hmax) wish.hmax = options.size.hmax->value;
+  wish.hmin = hmin_of(options);
+  wish.hmax = hmax_of(options);
   if (asked.stretched) wish.hgrad = asked.hgrad;
   const double growth = std::min(asked.hgrad, options.size.growth.value_or(asked.hgrad));
   try {
@@ -146,17 +157,22 @@ FieldPointer keep_on_grid(const Options& options, const SizeField& field, const 
   const AdaptReport report =
       grid.adapt(points, sizes, {.growth = growth, .refine_above = options.size.adaptive.refine_above}, context);
   if (!report.is_converged) context.warn("size.adaptive: the grid of sizes has as many cells as it may have");
-  return build_background_size_field(grid.grid(context), {.growth = growth}, context);
+  BackgroundGrid made = grid.grid(context);
+  if (options.size.adaptive.smooth)
+    for (Field& sizes_of : made.mesh.fields)
+      if (sizes_of.name == made.size) sizes_of.values = smooth_sizes(made.mesh, field, growth, context);
+  return build_background_size_field(made, {.growth = growth}, context);
 }
 
 }  // namespace
 
-FieldPointer build_job_size_field(const Options& options, const Model& model, const Box& domain, Context& context) {
+FieldPointer build_job_size_field(const Options& options, const Model& model, const Box& domain, Context& context,
+                                  const std::function<bool(Point)>& is_kept) {
   const double growth = options.size.growth.value_or(kDefaultGrowth);
   std::vector<FieldPointer> parts;
   parts.push_back(build_background_part(options, model, domain, growth, context));
   if (options.size.background.combine != "alone" || !parts[0]) {
-    parts.push_back(build_source_part(options, model, growth, context));
+    parts.push_back(build_source_part(options, model, growth, is_kept, context));
     parts.push_back(build_expression_part(options, model, domain, growth, context));
     parts.push_back(build_solution_part(options, domain, context));
   }
@@ -183,6 +199,35 @@ Model model_of(const PlanarDomain& domain) {
       model.curves.push_back({domain.curves[domain.curve_of_segment[i]].name, {a, b}});
   }
   return model;
+}
+
+std::function<bool(Point)> kept_part(PlanarDomain domain, CurveId far_field, const Options& options, Context& context) {
+  if (far_field.is_valid()) domain.curves[far_field].kind = "farfield";
+  Options coarse;  // the lines as they are tell
+  coarse.domain = options.domain;
+  coarse.planar.boundary = "keep";
+  const PlanarPrepared prepared = prepare_planar(domain, coarse, nullptr, context);
+  const TriComplex& c = prepared.grid.complex;
+  std::vector<std::array<Point, 3>> kept;
+  for (TriIndex t = 0; t < c.tri.size(); ++t) {
+    if (c.is_ghost(t) || c.is_dead(t) || c.tri[t].region == kOutside) continue;
+    const auto corner = [&](int k) {
+      const Point2 p = c.point[c.tri[t].node[k]];
+      return Point{p.x, p.y, 0};
+    };
+    kept.push_back({corner(0), corner(1), corner(2)});
+  }
+  return [tree = std::make_shared<const TriangleTree>(std::move(kept))](Point at) {
+    bool is_in = false;
+    Box place;
+    place.add(at);
+    tree->bvh().for_each_overlap(place, [&](std::uint32_t t) {
+      const auto& [a, b, d] = tree->corners(t);
+      const auto is_left = [&](Point p, Point q) { return (q.x - p.x) * (at.y - p.y) >= (q.y - p.y) * (at.x - p.x); };
+      is_in = is_in || (is_left(a, b) && is_left(b, d) && is_left(d, a));
+    });
+    return is_in;
+  };
 }
 
 }  // namespace delfront

@@ -238,8 +238,11 @@ void work_in_the_plane(Run& run) {
   }
   if (run.options.stop_after == "volume") run.options.improve.enabled = false;
   const Model names = model_of(domain);
+  const SizeOptions& size = run.options.size;
+  std::function<bool(Point)> is_kept;
+  if (size.gap.cells > 0 || size.automatic) is_kept = kept_part(domain, far_field, run.options, run.context);
   const std::shared_ptr<const SizeField> sizes =
-      build_job_size_field(run.options, names, names.bounding_box(), run.context);
+      build_job_size_field(run.options, names, names.bounding_box(), run.context, is_kept);
   if (run.kind != JobKind::grid) return survey_plane(run, std::move(domain), far_field, sizes);
   Outcome outcome = generate_in_far_field(domain, far_field, run.options, sizes, run.context);
   finish(run, std::move(outcome));

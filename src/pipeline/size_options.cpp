@@ -140,6 +140,9 @@ void add_grid_rows(std::vector<OptionRow>& t) {
   t.push_back(number_row(
       "size.adaptive.refine_above", "", "", "its cells are refined where sizes differ by this factor",
       "a number over 1, at most 10", 1.05, 10, [](auto& o) -> auto& { return o.size.adaptive.refine_above; }));
+  t.push_back(boolean_row(
+      "size.adaptive.smooth", "sizes on it are smoothed by diffusion, never above what is asked for",
+      [](auto& o) -> auto& { return o.size.adaptive.smooth; }));
 }
 
 // --- entries of [[size.source]] ----------------------------------------------------------------------------------

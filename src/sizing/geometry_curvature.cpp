@@ -13,6 +13,7 @@
 #include "delfront/errors.hpp"
 #include "fmt/format.h"
 #include "sizing/geometry_facets.hpp"
+#include "sizing/geometry_plane.hpp"
 
 namespace delfront {
 namespace {
@@ -195,6 +196,7 @@ GeometrySources find_curvature_sizes(const Model& model, const CurvatureSizes& w
   check_wish(wish);
   GeometrySources found;
   if (!wish.cells_per_turn && !wish.angle_deg && !wish.deviation) return found;
+  if (is_in_the_plane(model)) return find_plane_curvature_sizes(model, wish, context);
   const Facets facets(model);
   const Curvature curvature = compute_curvature(facets);
   // flat to rounding, or so little curved that the model is smaller than the size

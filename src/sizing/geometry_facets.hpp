@@ -77,5 +77,6 @@ inline Simplex simplex(const std::array<Point, 3>& corner) { return {corner, 3};
 void check_bounds(const std::string& word, double hmin, double hmax);
 /// @return hmin, or where it is 0 the usual share of the diagonal
 double usual_hmin(const Facets& facets, double hmin);
+inline constexpr double kUsualShare = 1e-3;  ///< hmin, of the diagonal of the box
 
 }  // namespace delfront

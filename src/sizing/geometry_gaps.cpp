@@ -14,6 +14,7 @@
 #include "delfront/errors.hpp"
 #include "fmt/format.h"
 #include "sizing/geometry_facets.hpp"
+#include "sizing/geometry_plane.hpp"
 #include "spatial/bvh.hpp"
 
 namespace delfront {
@@ -45,6 +46,7 @@ class GapFinder {
  public:
   GapFinder(const Facets& facets, const GapSizes& wish)
       : facets_(facets),
+        is_kept_(wish.is_kept),
         cells_(wish.cells),
         hmin_(usual_hmin(facets, wish.hmin)),
         largest_(std::min(wish.hmax * wish.cells, facets.diagonal())),
@@ -82,7 +84,8 @@ class GapFinder {
       // where its nearest point lies behind us or to the side, the place met stands for it
       const Point to = dot(nearest - from, ahead) >= cos_facing_ * distance(nearest, from) ? nearest : hit.at;
       const double width = distance(from, to);
-      if (width > 0 && width < best.distance) best = {width, to};
+      if (!(width > 0 && width < best.distance)) continue;
+      if (!is_kept_ || is_kept_(0.5 * (from + to))) best = {width, to};
     }
     return best;
   }
@@ -133,6 +136,7 @@ class GapFinder {
   }
 
   const Facets& facets_;
+  const std::function<bool(Point)>& is_kept_;
   TriangleTree tree_;
   double cells_, hmin_, largest_, shortest_, cos_facing_;
 };
@@ -182,6 +186,7 @@ class LineFinder {
 
 GeometrySources find_gap_sizes(const Model& model, const GapSizes& wish, Context& context) {
   check_gap("gap", wish);
+  if (is_in_the_plane(model)) return find_plane_gap_sizes(model, wish, context);
   const Facets facets(model);
   const GapFinder finder(facets, wish);
   constexpr std::size_t kGrain = 256;

@@ -99,8 +99,9 @@ GeometrySources find_named_sizes(const Model& model, std::span<const NamedSize> 
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context) {
   check_bounds("automatic sizes", wish.hmin, std::numeric_limits<double>::infinity());
   GeometrySources found = find_named_sizes(model, wish.named, context);
-  constexpr double kUsualShare = 1e-3;
-  const double hmin = wish.hmin > 0 ? wish.hmin : kUsualShare * model.surface_box().diagonal();
+  const double hmin =
+      wish.hmin > 0 ? wish.hmin
+                    : kUsualShare * (model.triangles.empty() ? model.bounding_box() : model.surface_box()).diagonal();
   if (wish.cells_per_turn) {
     CurvatureSizes curvature;
     curvature.cells_per_turn = wish.cells_per_turn;
@@ -110,6 +111,7 @@ GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& w
   GapSizes gap;
   gap.hmin = hmin;
   gap.side = wish.side;
+  gap.is_kept = wish.is_kept;
   if (wish.gap_cells) {
     gap.cells = *wish.gap_cells;
     found.append(find_gap_sizes(model, gap, context));

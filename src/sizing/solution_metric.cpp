@@ -378,14 +378,19 @@ SolutionMetric build_solution_metric(const Mesh& mesh, const std::string& name, 
 BackgroundGrid background_from_solution(Mesh mesh, const std::string& name, const SolutionOptions& options,
                                         Context& context) {
   const SolutionMetric made = build_solution_metric(mesh, name, options, context);
-  Field field{"metric", Field::On::vertices, CellType::vertex, 6, {}};
-  for (const Metric& m : made.metric) field.values.insert(field.values.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});
-  std::erase_if(mesh.fields, [](const Field& f) { return f.name == "metric" && f.on == Field::On::vertices; });
-  mesh.fields.push_back(std::move(field));
   BackgroundGrid grid;
-  grid.mesh = std::move(mesh);
   grid.name = name;
-  grid.metric = "metric";
+  std::string& of_grid = options.is_stretched ? grid.metric : grid.size;
+  of_grid = options.is_stretched ? "metric" : "size";
+  Field field{of_grid, Field::On::vertices, CellType::vertex, options.is_stretched ? 6 : 1, {}};
+  for (const Metric& m : made.metric)
+    if (options.is_stretched)
+      field.values.insert(field.values.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});
+    else
+      field.values.push_back(least_size(m));
+  std::erase_if(mesh.fields, [&](const Field& f) { return f.name == of_grid && f.on == Field::On::vertices; });
+  mesh.fields.push_back(std::move(field));
+  grid.mesh = std::move(mesh);
   return grid;
 }
 

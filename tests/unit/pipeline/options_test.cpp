@@ -274,6 +274,7 @@ Options unusual_options() {
       {"size.solution.stretched", "true"},
       {"size.adaptive.cells", "12"},
       {"size.adaptive.refine_above", "2"},
+      {"size.adaptive.smooth", "true"},
       {"planar.boundary", "split"},
       {"planar.min_angle", "25"},
       {"volume.method", "none"},
