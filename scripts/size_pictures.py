@@ -50,6 +50,7 @@ ROWS = {
     "s10_gaps": ("S10: cells across the gap between ball and wall", [("z", 0)]),
     "s11_together": ("S11: curvature, gap, formula, name, box and source at once", [("y", 0)]),
     "s12_solution": ("S12: a bent shock of a solution", [("z", 0)]),
+    "s13_accuracy": ("S13: an angle and a distance that the surface is to hold", [("z", 0)]),
 }
 
 
@@ -202,6 +203,7 @@ def draw_wanted(axes, wanted, box, lines, norm, levels):
     image[np.isnan(wanted)] = 1
     axes.imshow(image, origin="lower", extent=box, interpolation="nearest", aspect="auto")
     xs, ys = (np.linspace(box[i], box[i + 1], n) for i, n in ((0, wanted.shape[1]), (2, wanted.shape[0])))
+    levels = np.array(levels) + 1e-3 * (norm.vmax - norm.vmin)  # where the size is constant at a level none is drawn
     axes.contour(xs, ys, wanted, levels=levels, colors=[picture.INK], linewidths=0.5, alpha=0.55)
     axes.add_collection(LineCollection(lines, colors=[picture.INK], linewidths=1.2))
 
