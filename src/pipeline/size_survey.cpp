@@ -24,8 +24,6 @@ constexpr double kIrregular = 1.04, kPerBorderTriangle = 1.2, kPerBorderSegment 
 constexpr double kBorderWidth = 1.5;  ///< sizes; boxes on the border are halved until they are narrower
 constexpr std::size_t kGrain = 1 << 6;
 constexpr int kMaxHalvings = 12;
-/// Boxes of equal sizes at their corners may have larger ones between them; those that are drawn must be really flat.
-constexpr double kFlatEnoughToSee = 1.001;
 
 // Of this program on one core of about 2.5 GHz; bench/compare_peers.py measures them (docs/performance.md).
 constexpr double kSecondsPerTet = 0.5e-6, kSecondsPerTetAndThread = 0.8e-6, kSecondsPerTriangle = 0.5e-6;
@@ -208,7 +206,7 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context&
 }
 
 Mesh size_mesh(const KeptDomain& domain, const SizeField& size, Context& context) {
-  const SizeOctree octree(size, domain.box(), {.flat = kFlatEnoughToSee}, context);
+  const SizeOctree octree(size, domain.box(), {}, context);
   Mesh mesh;
   mesh.dimension = octree.dimension();
   CellBlock& block = mesh.block(mesh.dimension == 3 ? CellType::hexahedron : CellType::quad);
