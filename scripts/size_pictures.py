@@ -4,9 +4,9 @@
 
     size_pictures.py [ROW ...] [--delfront PATH] [--out FOLDER]     # e.g. size_pictures.py s04; default: all rows
 
-Writes docs/sizes/pictures/<row>.png, and <row>_2.png where one plane does not show all. Left the size that `delfront sizes` tells, with contour lines at the numbers of
-the scale; right the cells beyond the plane, whole, coloured by the mean length of their edges. Needs a built
-delfront, numpy, matplotlib, meshio and Pillow; no display.
+Writes docs/sizes/pictures/<row>.png, and <row>_2.png where one plane does not show all. Left the size that `delfront
+sizes` tells, with contour lines at the numbers of the scale; right the cells beyond the plane, whole, coloured by the
+mean length of their edges. Needs a built delfront, numpy, matplotlib, meshio and Pillow; no display.
 """
 
 import argparse
@@ -167,7 +167,8 @@ def draw_cut(grid, plane, length, norm):
     canvas = picture.Canvas(camera.width, camera.height)
     faces, owner = picture.cut_faces(grid, keep)
     line = 0.45 * picture.OVERSAMPLING
-    colours = picture.lit(SMALL_TO_LARGE(norm(length[owner]))[:, :3], picture.normals_of(grid.points, faces), camera, 0.9)
+    colours = SMALL_TO_LARGE(norm(length[owner]))[:, :3]
+    colours = picture.lit(colours, picture.normals_of(grid.points, faces), camera, 0.9)
     canvas.draw(camera, grid.points, faces, colours, line, 0.7)
     behind = grid.triangles[(grid.cell_behind >= 0) & keep[grid.cell_behind]]
     colours = np.tile(to_rgb(CAVITY), (len(behind), 1))
@@ -217,10 +218,12 @@ class Row:
         self.grid = picture.Grid(path)
         h = meshio.read(path).point_data["h"].ravel()
         self.range = h.min(), h.max()
-        self.levels = [v for v in MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(*self.range) if h.min() < v < h.max()]
+        ticks = MaxNLocator(8, steps=[1, 2, 2.5, 5, 10]).tick_values(*self.range)
+        self.levels = [v for v in ticks if h.min() < v < h.max()]
         self.length = mean_edges(self.grid)
-        self.facts = (f"{picture.grouped(len(self.grid.tets))} tetrahedra, {100 * share_as_asked(self.grid, h):.2f} % of "
-                      "their edges 0.5 to 2 times as long as wanted")
+        share = 100 * share_as_asked(self.grid, h)
+        self.facts = (f"{picture.grouped(len(self.grid.tets))} tetrahedra; off the surface {share:.2f} % of their edges "
+                      "are 0.5 to 2 times as long as wanted")
 
     def draw(self, plane, out):
         grid, norm, sheet = self.grid, Normalize(*self.range), Sheet()

@@ -23,8 +23,8 @@ def background(sizes=(0.1, 0.1, 0.1, 0.1), shift=0.0):
     corners = [(-2 + shift, -2), (2 + shift, -2), (2 + shift, 2), (-2 + shift, 2)]
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", "4",
              *(f"{i + 1} {x} {y} 0" for i, (x, y) in enumerate(corners)), "$EndNodes", "$Elements", "2",
-             "1 2 2 1 1 1 2 3", "2 2 2 1 1 1 3 4", "$EndElements", "$NodeData", "1", '"h"', "1", "0", "3", "0", "1", "4",
-             *(f"{i + 1} {h}" for i, h in enumerate(sizes)), "$EndNodeData"]
+             "1 2 2 1 1 1 2 3", "2 2 2 1 1 1 3 4", "$EndElements", "$NodeData", "1", '"h"', "1", "0", "3",
+             "0", "1", "4", *(f"{i + 1} {h}" for i, h in enumerate(sizes)), "$EndNodeData"]
     return "\n".join(lines) + "\n"
 
 
@@ -79,8 +79,8 @@ class SizeSlips(case.Case):
     def test_names_exist(self):
         self.refuse(2, "[size.on.wing]\nh = 0.1", 3, "size.on.wing", "no patch, curve or corner", "patch_1")
         self.refuse(2, "[size]\nexpression = 'distance(\"wing\")'", 4, "no patch, curve or corner", "patch_1")
-        self.refuse(2, '[size]\nwithout = ["wak"]\n' + point_source("delta0 = 0.1", 'group = "wake"'), 4, "size.without",
-                    "did you mean 'wake'?")
+        self.refuse(2, '[size]\nwithout = ["wak"]\n' + point_source("delta0 = 0.1", 'group = "wake"'), 4,
+                    "size.without", "did you mean 'wake'?")
 
     def test_formulas_have_values(self):
         self.refuse(2, '[size]\nexpression = "0.1 + * x"', 4, "column 7", "expected a number, a name or (")
