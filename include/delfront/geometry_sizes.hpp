@@ -75,8 +75,8 @@ double size_on_radius(double r, const CurvatureSizes& wish);
 /// the triangles that meet there without a crease, by angle, so that it does not matter how flat facets are cut into
 /// triangles. Creases are edges that turn by more than model.feature_angle, or with one or more than two triangles.
 ///
-/// Lines in the plane (a model of curves without triangles): the circle through a vertex and its neighbours, at vertices
-/// between two segments that turn by no more than model.feature_angle.
+/// Lines in the plane (a model of curves without triangles): the circle through a vertex and its neighbours, at
+/// vertices between two segments that turn by no more than model.feature_angle.
 /// @throws UsageError  n < 1, an angle outside of (0, 180), a deviation or bounds that are not positive, hmin > hmax
 /// @par Cost  O(n)
 /// @par Source  Löhner (2008), 3.2.8, eq. 3.20; tensor fit after Rusinkiewicz (2004)

@@ -89,8 +89,7 @@ struct JobResult {
 /// @throws UsageError  an entry that makes no sense: its place in the job file, what is wrong, what is allowed
 /// @throws InputError  a file that cannot be read or has bad sizes
 std::shared_ptr<const SizeField> build_job_size_field(const Options& options, const Model& model, const Box& domain,
-                                                      Context& context,
-                                                      const std::function<bool(Point)>& is_kept = {});
+                                                      Context& context, const std::function<bool(Point)>& is_kept = {});
 
 /// @brief A whole job: read, check, enclose, grid, improve, gates, write, report.
 ///

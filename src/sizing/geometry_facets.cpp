@@ -149,8 +149,6 @@ void check_bounds(const std::string& word, double hmin, double hmax) {
   if (hmin > hmax) throw UsageError(fmt::format("{}: hmin {} exceeds hmax {}; exchange them?", word, hmin, hmax));
 }
 
-double usual_hmin(const Facets& facets, double hmin) {
-  return hmin > 0 ? hmin : kUsualShare * facets.diagonal();
-}
+double usual_hmin(const Facets& facets, double hmin) { return hmin > 0 ? hmin : kUsualShare * facets.diagonal(); }
 
 }  // namespace delfront
