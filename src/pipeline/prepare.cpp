@@ -78,11 +78,11 @@ void warn_of_coarse_surface(const Model& model, const SizeOptions& options, Cont
 }
 
 /// The field's size at every vertex, so that all sizes keep the growth.
-void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
+void set_vertex_sizes(TetComplex& complex, const SizeField& field, const Context& context) {
   std::vector<Point> places;
   for (const TetVertex& v : complex.vertex) places.push_back(v.point());
   std::vector<double> sizes(places.size());
-  field.sizes(places, sizes);
+  evaluate_sizes(field, places, sizes, context);
   for (std::size_t v = 0; v < sizes.size(); ++v) complex.vertex[v].h = sizes[v];
 }
 
@@ -96,7 +96,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
   warn_of_coarse_surface(model, options.size, context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
-  set_vertex_sizes(prepared.grid.complex, *prepared.size);
+  set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;
 }
 
