@@ -26,6 +26,7 @@ namespace {
 using FieldPointer = std::shared_ptr<const SizeField>;
 
 constexpr double kMuchOutside = 0.1;
+constexpr double kPlacesOnBoundary = 5000;
 
 double hmin_of(const Options& options) { return options.size.hmin ? options.size.hmin->value : 0; }
 double hmax_of(const Options& options) {
@@ -77,15 +78,42 @@ FieldPointer build_expression_part(const Options& options, const Model& model, c
   }
 }
 
+/// Places spread evenly over the triangles of the model, or, in the plane, over its lines.
+std::vector<Point> places_on_boundary(const Model& model) {
+  std::vector<std::array<Point, 3>> pieces;
+  for (const auto& t : model.triangles) pieces.push_back({model.points[t[0]], model.points[t[1]], model.points[t[2]]});
+  const bool is_planar = pieces.empty();
+  if (is_planar)
+    for (const Curve& curve : model.curves)
+      for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
+        const Point b = model.points[curve.vertices[i + 1]];
+        pieces.push_back({model.points[curve.vertices[i]], b, b});
+      }
+  const auto measure = [&](const std::array<Point, 3>& p) {
+    return is_planar ? distance(p[0], p[1]) : length(cross(p[1] - p[0], p[2] - p[0]));
+  };
+  double whole = 0, waiting = 0;
+  for (const auto& piece : pieces) whole += measure(piece);
+  std::vector<Point> places;
+  for (const auto& [a, b, c] : pieces) {
+    waiting += kPlacesOnBoundary * measure({a, b, c}) / whole;
+    for (; waiting > 0; --waiting) {  // fractions of two golden ratios fill the piece evenly
+      const auto n = static_cast<double>(places.size());
+      double u = std::fmod(n * 0.7548776662466927, 1.0), v = is_planar ? 0 : std::fmod(n * 0.5698402909980532, 1.0);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      places.push_back(a + u * (b - a) + v * (c - a));
+    }
+  }
+  return places;
+}
+
 /// Most of the domain should lie in the grid: outside, sizes are those of its nearest border, which not everyone means.
 void warn_of_share_outside(const BackgroundField& field, const std::string& file, const Model& model,
                            Context& context) {
-  const std::vector<Point> points(model.points.begin(), model.points.end());
-  const double share = field.share_outside(points);
+  const double share = field.share_outside(places_on_boundary(model));
   if (share > kMuchOutside)
     context.warn(
-        fmt::format("{:.0f} % of the boundary's points lie outside of {}: sizes there are those of its nearest "
-                    "border",
+        fmt::format("about {:.0f} % of the boundary lies outside of {}: sizes there are those of its nearest border",
                     100 * share, file));
 }
 

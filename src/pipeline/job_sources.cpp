@@ -75,6 +75,9 @@ void add_source(const SourceOptions& source, std::vector<SizeSource>& sources, C
   if (source.stretch)
     made.stretching = {source.stretch->s1, source.stretch->s2, source.stretch->first, source.stretch->second};
   if (made.stretching) stretched_metric(made.law.delta0, *made.stretching);  // refuses what is none
+  if (source.motion && source.motion->rate != 0 && source.motion->axis == Point{})
+    throw UsageError(fmt::format("motion: rate = {} but no axis; give the axis to turn about, e.g. axis = [0, 0, 1]",
+                                 source.motion->rate));
   if (source.motion)
     made.motion = {source.motion->velocity, source.motion->centre, source.motion->axis, source.motion->rate};
   made.group = source.group;

@@ -38,7 +38,7 @@ std::uint64_t as_count(const JobValue& value) {
 Length as_length(const JobValue& value, bool least_is_zero) {
   const Length length = value.is_number() ? Length{as_number(value), ""} : parse_length(as_text(value));
   if (length.value < 0 || (length.value == 0 && !least_is_zero))
-    throw BadValue(fmt::format("got {}, which is not positive", describe(value)));
+    throw BadValue(fmt::format("got {}, which is {}", describe(value), least_is_zero ? "negative" : "not positive"));
   return length;
 }
 

@@ -77,13 +77,19 @@ void warn_of_coarse_surface(const Model& model, const SizeOptions& options, Cont
                     longest, at.x, at.y, at.z, options.hmax->value));
 }
 
-/// The field's size at every vertex, so that all sizes keep the growth.
+/// The field's size at every vertex, so that all sizes keep the growth. Vertices that the grid does not use are not
+/// asked for: some lie far outside, where a formula need not have a value.
 void set_vertex_sizes(TetComplex& complex, const SizeField& field, const Context& context) {
+  std::vector<VertexIndex> used;
   std::vector<Point> places;
-  for (const TetVertex& v : complex.vertex) places.push_back(v.point());
+  for (VertexIndex v = 0; v < complex.num_vertices(); ++v) {
+    if (complex.vertex_tet[v] == kNoIndex) continue;
+    used.push_back(v);
+    places.push_back(complex.point(v));
+  }
   std::vector<double> sizes(places.size());
   evaluate_sizes(field, places, sizes, context);
-  for (std::size_t v = 0; v < sizes.size(); ++v) complex.vertex[v].h = sizes[v];
+  for (std::size_t i = 0; i < used.size(); ++i) complex.vertex[used[i]].h = sizes[i];
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "delfront/errors.hpp"
@@ -92,17 +92,26 @@ class Integral {
   const SizeField& size_;
 };
 
+/// Twice the area of a, b, p, seen along x; exactly the negative for b, a, p.
+double side_of(Point p, Point a, Point b) {
+  if (std::pair(b.y, b.z) < std::pair(a.y, a.z)) return -side_of(p, b, a);
+  return (b.y - a.y) * (p.z - a.z) - (b.z - a.z) * (p.y - a.y);
+}
+
+/// Whether p is left of a, b, seen along x. On the line it is taken as a little further along z, then along y: a ray
+/// through an edge meets one of the edge's two triangles then (grids of even squares have most of their edges there).
+bool is_left(Point p, Point a, Point b) {
+  const double side = side_of(p, a, b);
+  return side != 0 ? side > 0 : b.y != a.y ? b.y > a.y : b.z < a.z;
+}
+
 /// Whether the ray from p along x meets a triangle, seen along x.
 bool is_before(Point p, const std::array<Point, 3>& t) {
-  double side[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Point a = t[k], b = t[(k + 1) % 3];
-    side[k] = (b.y - a.y) * (p.z - a.z) - (b.z - a.z) * (p.y - a.y);
-  }
-  const bool is_in = (side[0] >= 0) == (side[1] >= 0) && (side[1] >= 0) == (side[2] >= 0);
+  const bool left = is_left(p, t[0], t[1]);
+  if (left != is_left(p, t[1], t[2]) || left != is_left(p, t[2], t[0])) return false;
+  const double side[3] = {side_of(p, t[0], t[1]), side_of(p, t[1], t[2]), side_of(p, t[2], t[0])};
   const double whole = side[0] + side[1] + side[2];
-  if (!is_in || whole == 0) return false;
-  return (side[1] * t[0].x + side[2] * t[1].x + side[0] * t[2].x) / whole > p.x;
+  return whole != 0 && (side[1] * t[0].x + side[2] * t[1].x + side[0] * t[2].x) / whole > p.x;
 }
 
 bool is_before_segment(Point p, Point a, Point b) {

@@ -18,8 +18,8 @@ constexpr double kLeast = std::numeric_limits<double>::min();  // the lower boun
 [[noreturn]] void fail_value(const Expression& expression, const char* what, Point at, double value) {
   throw InputError(fmt::format("expression {} gives {:.6g} at ({:.6g}, {:.6g}, {:.6g}); {} must be positive: use "
                                "max(…, the least you want){}",
-                               quoted(expression.text()), value, at.x, at.y, at.z, what,
-                               std::isnan(value) ? " inside of roots, logarithms and divisors" : ""),
+                               quoted(expression.text()), std::isnan(value) ? std::abs(value) : value, at.x, at.y, at.z,
+                               what, std::isnan(value) ? " inside of roots, logarithms and divisors" : ""),
                    {{at, {}}});
 }
 

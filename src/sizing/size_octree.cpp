@@ -13,7 +13,8 @@ namespace delfront {
 namespace {
 
 constexpr std::size_t kGrain = 1 << 8;
-constexpr double kFlat = 1e-9;  ///< of the longest side: less is the plane
+constexpr double kFlat = 1e-9;    ///< of the longest side: less is the plane
+constexpr int kLevelToTrust = 3;  ///< corners of larger leaves tell too little of what is between them
 
 }  // namespace
 
@@ -28,16 +29,19 @@ SizeOctree::SizeOctree(const SizeField& size, const Box& domain, const SizeOctre
     add_corners(cells, size, context);
     std::vector<OctreeLeaf> finer;
     const bool is_last = level == kMaxLevel;
-    const auto num_split = static_cast<std::size_t>(
-        std::count_if(cells.begin(), cells.end(), [&](const OctreeLeaf& leaf) { return !is_fine(leaf); }));
+    std::vector<std::uint8_t> fine(cells.size());
+    parallel_ranges(context.threads, cells.size(), kGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) fine[i] = is_fine(cells[i], size);
+    });
+    const auto num_split = static_cast<std::size_t>(std::count(fine.begin(), fine.end(), 0));
     const bool is_too_much =
         leaves_.size() + cells.size() - num_split + (num_split << dimension_) > options_.max_leaves;
     is_cut_short_ |= num_split > 0 && (is_too_much || is_last);
-    for (const OctreeLeaf& leaf : cells) {
-      if (is_cut_short_ || is_fine(leaf))
-        leaves_.push_back(leaf);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (is_cut_short_ || fine[i])
+        leaves_.push_back(cells[i]);
       else
-        for (const OctreeLeaf& half : halves(leaf)) finer.push_back(half);
+        for (const OctreeLeaf& half : halves(cells[i])) finer.push_back(half);
     }
     cells = std::move(finer);
   }
@@ -50,7 +54,7 @@ Box SizeOctree::box(const OctreeLeaf& leaf) const {
   for (int k = 0; k < dimension_; ++k) {
     const double at = leaf.at[static_cast<std::size_t>(k)];
     box.low[k] = domain_.low[k] + std::ldexp(side_ * at, -leaf.level);
-    box.high[k] = domain_.low[k] + std::ldexp(side_ * (at + 1), -leaf.level);
+    box.high[k] = std::min(domain_.low[k] + std::ldexp(side_ * (at + 1), -leaf.level), domain_.high[k]);
   }
   return box;
 }
@@ -87,8 +91,10 @@ void SizeOctree::add_corners(std::vector<OctreeLeaf>& cells, const SizeField& si
     if (const auto it = place_of(key); it != corner_of_key_.end() && it->first == key) continue;
     added.emplace_back(key, static_cast<std::uint32_t>(corners_.size()));
     Point at = domain_.low;
-    for (int k = 0; k < dimension_; ++k)
+    for (int k = 0; k < dimension_; ++k) {  // a formula need not have a value beyond the domain
       at[k] += std::ldexp(side_ * static_cast<double>(key >> (21 * k) & ((1u << 21) - 1)), -kMaxLevel);
+      at[k] = std::min(at[k], domain_.high[k]);
+    }
     corners_.push_back(at);
   }
   const auto middle = static_cast<std::ptrdiff_t>(corner_of_key_.size());
@@ -103,24 +109,32 @@ void SizeOctree::add_corners(std::vector<OctreeLeaf>& cells, const SizeField& si
 }
 
 bool SizeOctree::is_steep(const OctreeLeaf& leaf) const {
-  const double s = side(leaf), whole_rise = options_.slope * s * std::sqrt(dimension_);
+  const double whole_rise = options_.slope * box(leaf).diagonal();
   for (int a = 0; a < num_corners(); ++a) {
     const double high = corner_sizes_[leaf.corner[static_cast<std::size_t>(a)]];
     if (high > leaf.low + whole_rise) return true;
     for (int b = 0; b < num_corners(); ++b) {
       const double low = corner_sizes_[leaf.corner[static_cast<std::size_t>(b)]];
-      const double away = s * std::sqrt(static_cast<double>(__builtin_popcount(static_cast<unsigned>(a ^ b))));
+      const double away = distance(corners_[leaf.corner[static_cast<std::size_t>(a)]],
+                                   corners_[leaf.corner[static_cast<std::size_t>(b)]]);
       if (high > low + options_.slope * away * (1 + 1e-9)) return true;
     }
   }
   return false;
 }
 
-bool SizeOctree::is_fine(const OctreeLeaf& leaf) const {
+/// Corners alone may all stand where the size is least, with larger ones between them: the centre is looked at too.
+bool SizeOctree::is_flat(const OctreeLeaf& leaf, const SizeField& size) const {
   double greatest = 0;
   for (int c = 0; c < num_corners(); ++c)
     greatest = std::max(greatest, corner_sizes_[leaf.corner[static_cast<std::size_t>(c)]]);
-  if (greatest <= options_.flat * leaf.low) return true;
+  const double limit = options_.flat * leaf.low;
+  if (greatest > limit) return false;
+  return size.largest() <= limit || (leaf.level >= kLevelToTrust && size.size(box(leaf).centre()) <= limit);
+}
+
+bool SizeOctree::is_fine(const OctreeLeaf& leaf, const SizeField& size) const {
+  if (is_flat(leaf, size)) return true;
   const double s = side(leaf);
   if (s > options_.sizes_per_leaf * leaf.low) return false;
   return s <= options_.sizes_per_steep_leaf * leaf.low || !is_steep(leaf);
@@ -131,11 +145,13 @@ std::vector<OctreeLeaf> SizeOctree::halves(const OctreeLeaf& leaf) const {
   for (int octant = 0; octant < num_corners(); ++octant) {
     OctreeLeaf half;
     half.level = leaf.level + 1;
+    bool is_within = true;
     for (int k = 0; k < dimension_; ++k) {
       const auto i = static_cast<std::size_t>(k);
       half.at[i] = 2 * leaf.at[i] + static_cast<std::uint32_t>(octant >> k & 1);
+      is_within = is_within && domain_.low[k] + std::ldexp(side_ * half.at[i], -half.level) < domain_.high[k];
     }
-    if (box(half).overlaps(domain_)) result.push_back(half);
+    if (is_within) result.push_back(half);
   }
   return result;
 }

@@ -29,6 +29,7 @@ struct SizeOctreeOptions {
 };
 
 /// @brief Cubes as large as a size field allows: what is summed up, drawn or sampled is as fine as the grid would be.
+/// Those on the upper sides of the domain end there, so that the field is never asked beyond it.
 ///
 /// Lower bounds decide what is cut, so nothing that a field says is missed between samples.
 /// @par Cost  leaves are a few hundredths of the cells that the field asks for
@@ -54,7 +55,8 @@ class SizeOctree {
 
   void set_bounds(std::vector<OctreeLeaf>& cells, const SizeField& size, Context& context) const;
   void add_corners(std::vector<OctreeLeaf>& cells, const SizeField& size, Context& context);
-  bool is_fine(const OctreeLeaf& leaf) const;
+  bool is_flat(const OctreeLeaf& leaf, const SizeField& size) const;
+  bool is_fine(const OctreeLeaf& leaf, const SizeField& size) const;
   std::vector<OctreeLeaf> halves(const OctreeLeaf& leaf) const;
   std::uint64_t corner_key(const OctreeLeaf& leaf, int corner) const;
 

@@ -43,10 +43,51 @@ TEST(SizeOctree, leaves_fill_the_cube_and_are_as_small_as_sizes) {
   }
 }
 
-TEST(SizeOctree, of_one_size_is_one_leaf) {
+TEST(SizeOctree, of_one_size_is_one_leaf_where_no_size_can_be_larger) {
   Context context;
-  const SizeOctree octree(step_field({{5, 5, 5}, {6, 6, 6}}, 0.1, 0.2), {{0, 0, 0}, {1, 1, 1}}, {}, context);
-  EXPECT_EQ(octree.leaves().size(), 1u);
+  const auto field = std::make_shared<const FunctionField>(step_field({{5, 5, 5}, {6, 6, 6}}, 0.1, 0.2));
+  const Box cube{{0, 0, 0}, {1, 1, 1}};
+  EXPECT_EQ(SizeOctree(*combine_size_fields({field}, 0, 0.2), cube, {}, context).leaves().size(), 1u);
+  EXPECT_GT(SizeOctree(*field, cube, {}, context).leaves().size(), 1u);  // a little is looked at
+}
+
+/// All corners of the cube have the least size.
+TEST(SizeOctree, finds_larger_sizes_between_corners) {
+  Context context;
+  const FunctionField hump = {[](Point p) { return 0.1 + 0.2 * (0.5 - std::abs(p.x - 0.5)); },
+                              [](const Box& box) {
+                                return 0.1 +
+                                       0.2 * (0.5 - std::max(std::abs(box.low.x - 0.5), std::abs(box.high.x - 0.5)));
+                              }};
+  const SizeOctree octree(hump, {{0, 0, 0}, {1, 1, 1}}, {}, context);
+  double greatest = 0;
+  for (const double h : octree.corner_sizes()) greatest = std::max(greatest, h);
+  EXPECT_NEAR(greatest, 0.2, 1e-12);
+}
+
+TEST(SizeOctree, asks_within_the_domain_only) {
+  Context context;
+  const Box domain{{0, 0, 0}, {1, 0.3, 0.7}};
+  bool is_within = true;
+  const auto see = [&](Point p) { is_within = is_within && domain.overlaps({p, p}); };
+  const FunctionField field = {[&](Point p) {
+                                 see(p);
+                                 return 0.01 + 0.1 * p.x;
+                               },
+                               [&](const Box& box) {
+                                 see(box.low);
+                                 see(box.high);
+                                 return 0.01 + 0.1 * box.low.x;
+                               }};
+  const SizeOctree octree(field, domain, {}, context);
+  double sum = 0;
+  for (const OctreeLeaf& leaf : octree.leaves()) {
+    const Point side = octree.box(leaf).high - octree.box(leaf).low;
+    EXPECT_GT(std::min({side.x, side.y, side.z}), 0);
+    sum += side.x * side.y * side.z;
+  }
+  EXPECT_TRUE(is_within);
+  EXPECT_NEAR(sum, 0.21, 1e-12);
 }
 
 TEST(SizeOctree, finds_what_lies_between_corners) {
