@@ -28,7 +28,7 @@ class SourceTree {
   SourceTree(std::vector<SourceTerm> terms, Context& context);
 
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  static constexpr int kWidth = 8, kBins = 64;
+  static constexpr int kWidth = 8, kBins = 32;
   bool empty() const { return terms_.empty(); }
 
   /// What a search found, from which the next one near by may start; changes its time only.
@@ -57,17 +57,19 @@ class SourceTree {
     Lanes low[3], high[3];
     std::uint32_t child[kWidth];  // a node, or a term with kTermBit set
   };
-  /// The upper halves of single precision numbers: squared distances within which a child may be below the size of a
-  /// bin; 0: never.
+  /// Distances within which a child may be below a size v: reach - fall * (share of the bin that v lies below its upper
+  /// end), never where that is negative. Falls are the upper halves of single precision numbers.
   struct alignas(16) Reach {
-    std::uint16_t squared[kWidth];
-    Lanes lanes() const;
-    float lane(std::uint32_t k) const;
+    float reach[kWidth];
+    std::uint16_t fall[kWidth];
+    Lanes squared(float below) const;
+    float squared(std::uint32_t lane, float below) const;
   };
   struct Query {
     float low[3], high[3];
     double best;
     int bin;
+    float below;  ///< how far `best` lies below the upper end of its bin, as a share of the bin
   };
   /// A child that may matter in a box; where it stands, for its reach.
   struct Entry {
@@ -79,12 +81,12 @@ class SourceTree {
     static constexpr std::size_t kLanes = 32, kGroups = kLanes / kWidth;
     std::size_t size = 0;
     std::uint64_t filled = 0;  ///< bins whose reaches are there
-    Lanes low[kGroups][3], high[kGroups][3], reach[kBins][kGroups];
+    Lanes low[kGroups][3], high[kGroups][3], reach[kBins][kGroups], fall[kBins][kGroups];
     Entry entry[kLanes];
   };
 
   Query start(Point low, Point high, double best, int bin) const;
-  int bin_of(double size, int guess) const;
+  void set_best(Query& query, double size) const;
   template <class Visit>
   void search(Query& query, Frontier* frontier, const Visit& visit) const;
   static Lanes squared_distance(const Lanes low[3], const Lanes high[3], const Query& query);
@@ -102,6 +104,7 @@ class SourceTree {
   Point centre_;
   double extent_ = 1, per_extent_ = 1;
   alignas(64) double edge_[kBins] = {};  // sizes, ascending; the last is infinite
+  double per_width_[kBins] = {};         // inverse widths of the bins; 0: of no use
 };
 
 }  // namespace delfront
