@@ -106,6 +106,7 @@ enum class SourceSearch : std::uint8_t {
   automatic,  ///< the quicker one as measured in docs/sizes/sources.md
   scan,       ///< every source for every point
   tree,       ///< branch and bound in a tree of boxes
+  lists,      ///< an octree with the sources that matter in each cell; the tree where they are many
 };
 
 struct SourceFieldOptions {
