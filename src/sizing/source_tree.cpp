@@ -89,7 +89,7 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
       builder.choose_first_sizes();
     else
       builder.choose_sizes(sample_sizes());
-    const auto order = builder.build(context);
+    const auto order = builder.build(pass == 1, context);
     std::copy(builder.edges().begin(), builder.edges().end(), edge_);
     for (std::size_t b = 0; b < kBins; ++b) per_width_[b] = builder.width(b) > 0 ? 1 / builder.width(b) : 0;
     nodes_.assign(builder.nodes().size(), {});
@@ -99,11 +99,22 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
       for (std::size_t c = 0; c < kWidth; ++c) {
         for (int k = 0; k < 3; ++k) nodes_[n].low[k][c] = from.low[k][c], nodes_[n].high[k][c] = from.high[k][c];
         nodes_[n].child[c] = from.child[c];
+        nodes_[n].turned = from.turned;
         for (std::size_t b = 0; b < kBins; ++b) {
           reaches_[b * nodes_.size() + n].reach[c] = from.reach[b][c];
           reaches_[b * nodes_.size() + n].fall[c] = from.fall[b][c];
         }
       }
+    }
+    turned_.assign(builder.turned_boxes().size(), {});
+    for (std::size_t n = 0; n < turned_.size(); ++n) {
+      const SourceTreeBuilder::TurnedBoxes& from = builder.turned_boxes()[n];
+      for (std::size_t c = 0; c < kWidth; ++c)
+        for (int k = 0; k < 3; ++k) {
+          for (int j = 0; j < 3; ++j) turned_[n].axis[k][j][c] = from.axis[k][j][c];
+          turned_[n].at[k][c] = from.at[k][c];
+          turned_[n].half[k][c] = from.half[k][c];
+        }
     }
     std::vector<SourceTerm> sorted;
     std::vector<std::uint32_t> numbers;
@@ -160,7 +171,7 @@ void SourceTree::set_best(Query& query, double size) const {
 }
 
 SourceTree::Query SourceTree::start(Point low, Point high, double best, int bin) const {
-  Query query{{}, {}, best, bin, 0};
+  Query query{{}, {}, {}, {}, best, bin, 0};
   set_best(query, best);
   for (int k = 0; k < 3; ++k) {
     const auto place = [&](double x) {
@@ -168,6 +179,8 @@ SourceTree::Query SourceTree::start(Point low, Point high, double best, int bin)
     };
     query.low[k] = place(low[k]);
     query.high[k] = place(high[k]);
+    query.middle[k] = 0.5f * (query.low[k] + query.high[k]);
+    query.half[k] = query.low[k] == query.high[k] ? 0 : (query.high[k] - query.middle[k]) * (1 + 1e-6f);
   }
   return query;
 }
@@ -182,6 +195,34 @@ SourceTree::Lanes SourceTree::squared_distance(const Lanes low[3], const Lanes h
     sum += gap * gap;
   }
   return sum;
+}
+
+SourceTree::Lanes SourceTree::squared_distance(const TurnedBoxes& boxes, const Query& query) {
+  const auto absolute = [](const Lanes& x) { return x < 0 ? -x : x; };
+  const bool is_point = query.half[0] == 0 && query.half[1] == 0 && query.half[2] == 0;
+  Lanes sum = {};
+  for (int k = 0; k < 3; ++k) {
+    const Lanes(&axis)[3] = boxes.axis[k];
+    Lanes gap = absolute(axis[0] * query.middle[0] + axis[1] * query.middle[1] + axis[2] * query.middle[2] -
+                         boxes.at[k]) - boxes.half[k];
+    if (!is_point)
+      gap -= absolute(axis[0]) * query.half[0] + absolute(axis[1]) * query.half[1] + absolute(axis[2]) * query.half[2];
+    gap = gap > 0 ? gap : Lanes{};
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// @return those that may be below query.best, as bits; how far away they are
+inline unsigned SourceTree::near_children(std::uint32_t id, const Reach& reach, const Query& query, Lanes& away) const {
+  const Node& node = nodes_[id];
+  away = squared_distance(node.low, node.high, query);
+  const Lanes within = reach.squared(query.below);
+  const unsigned mask = mask_of(away < within);
+  if (mask == 0 || node.turned == kNone) return mask;
+  const Lanes turned = squared_distance(turned_[node.turned], query);
+  away = away > turned ? away : turned;
+  return mask_of(away < within);
 }
 
 void SourceTree::prefetch(std::uint32_t child) const {
@@ -205,9 +246,9 @@ void SourceTree::search(Query& query, Frontier* frontier, const Visit& visit) co
   };
   const auto enter = [&](std::uint32_t id) {
     const Node& node = nodes_[id];
-    const Lanes away = squared_distance(node.low, node.high, query);
     const std::size_t bottom = top;
-    for (unsigned mask = mask_of(away < reaches[id].squared(query.below)); mask != 0; mask &= mask - 1) {
+    Lanes away;
+    for (unsigned mask = near_children(id, reaches[id], query, away); mask != 0; mask &= mask - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
       push({away[lane], node.child[lane], id, lane}, bottom);
     }
@@ -261,8 +302,8 @@ void SourceTree::find_frontier(const Query& query, Frontier& frontier) const {
   Entry node{0, 0, kNone, 0};
   for (;;) {
     const Node& opened = nodes_[node.child];
-    const Lanes away = squared_distance(opened.low, opened.high, query);
-    unsigned mask = mask_of(away < reaches[node.child].squared(query.below));
+    Lanes away;
+    unsigned mask = near_children(node.child, reaches[node.child], query, away);
     const std::size_t room = Frontier::kLanes - frontier.size - (last - first);
     if (static_cast<std::size_t>(std::popcount(mask)) > room) {
       add(node);

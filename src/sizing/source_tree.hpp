@@ -56,6 +56,12 @@ class SourceTree {
   struct alignas(64) Node {
     Lanes low[3], high[3];
     std::uint32_t child[kWidth];  // a node, or a term with kTermBit set
+    std::uint32_t turned;         // kNone: none
+  };
+  /// Boxes with axes of their own, of a node whose children lie flat or along lines: the boxes of Node around them
+  /// are much wider, and places far from a curved surface would see hundreds of them as near as the nearest.
+  struct alignas(64) TurnedBoxes {
+    Lanes axis[3][3], at[3], half[3];  // where |axis . p - at| <= half; axes a little shorter than 1
   };
   /// Distances within which a child may be below a size v: reach - fall * (share of the bin that v lies below its upper
   /// end), never where that is negative. Falls are the upper halves of single precision numbers.
@@ -67,6 +73,7 @@ class SourceTree {
   };
   struct Query {
     float low[3], high[3];
+    float middle[3], half[3];
     double best;
     int bin;
     float below;  ///< how far `best` lies below the upper end of its bin, as a share of the bin
@@ -90,6 +97,8 @@ class SourceTree {
   template <class Visit>
   void search(Query& query, Frontier* frontier, const Visit& visit) const;
   static Lanes squared_distance(const Lanes low[3], const Lanes high[3], const Query& query);
+  static Lanes squared_distance(const TurnedBoxes& boxes, const Query& query);
+  unsigned near_children(std::uint32_t id, const Reach& reach, const Query& query, Lanes& away) const;
   const Reach* row(int bin) const { return &reaches_[static_cast<std::size_t>(bin) * nodes_.size()]; }
   void prefetch(std::uint32_t child) const;
   void find_frontier(const Query& query, Frontier& frontier) const;
@@ -100,6 +109,7 @@ class SourceTree {
   std::vector<SourceTerm> terms_;      // in the order of the leaves
   std::vector<std::uint32_t> number_;  // as given
   std::vector<Node> nodes_;
+  std::vector<TurnedBoxes> turned_;
   std::vector<Reach> reaches_;  // (kBins, nodes): a search stays with few bins
   Point centre_;
   double extent_ = 1, per_extent_ = 1;

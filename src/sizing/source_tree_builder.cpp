@@ -6,12 +6,16 @@
 #include <cmath>
 #include <limits>
 
+#include "Eigen/Eigenvalues"
+
 namespace delfront {
 namespace {
 
 constexpr float kMargin = 0x1p-19f;   // of boxes, in units of the extent
 constexpr double kWiden = 1 + 4e-6;   // of reaches
 constexpr float kLeastReach = 1e-6f;  // its square must not vanish
+constexpr double kShort = 1 - 2e-6;      // axes, for the rounding of products with them
+constexpr float kTurnedMargin = 8e-6f;  // of turned boxes
 constexpr double kRoom = 1.2;         // places are expected within so many extents of the centre
 constexpr int kMedianDepth = 24;      // of nodes; below it clusters are halved only
 
@@ -153,7 +157,8 @@ SourceTreeBuilder::Lines SourceTreeBuilder::lines_of(const Item& item) const {
   return lines;
 }
 
-std::vector<std::uint32_t> SourceTreeBuilder::build(Context& context) {
+std::vector<std::uint32_t> SourceTreeBuilder::build(bool has_turned_boxes, Context& context) {
+  has_turned_boxes_ = has_turned_boxes;
   set_items();
   nodes_.clear();
   nodes_.reserve(terms_.size() / 4 + 1);
@@ -181,6 +186,71 @@ void SourceTreeBuilder::set_child(Node& node, std::size_t lane, const Lines& lin
   }
 }
 
+/// Along the principal axes of the corners. @return its volume, infinite where a shape has no corners
+double SourceTreeBuilder::set_turned_box(TurnedBoxes& boxes, std::size_t lane, const Cluster& cluster) const {
+  const auto for_each_corner = [&](const auto& visit) {
+    Point corner[3];
+    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+      const int n = terms_[items_[i].term].shape.corners(corner);
+      for (int k = 0; k < n; ++k) visit((1 / extent_) * (corner[k] - centre_));
+      if (n == 0) return false;
+    }
+    return true;
+  };
+  Point sum;
+  double count = 0;
+  const auto add = [&](Point p) {
+    sum = sum + p;
+    ++count;
+  };
+  if (!for_each_corner(add)) return std::numeric_limits<double>::infinity();
+  const Point mean = sum / count;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for_each_corner([&](Point p) {
+    const Eigen::Vector3d v(p.x - mean.x, p.y - mean.y, p.z - mean.z);
+    covariance += v * v.transpose();
+  });
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  const double far = std::abs(centre_.x) + std::abs(centre_.y) + std::abs(centre_.z);
+  const auto rounding = static_cast<float>(64 * std::numeric_limits<double>::epsilon() * far / extent_);
+  double volume = 1;
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) boxes.axis[k][j][lane] = static_cast<float>(kShort * axes(j, k));
+    const auto along = [&](Point p) {
+      return double(boxes.axis[k][0][lane]) * p.x + double(boxes.axis[k][1][lane]) * p.y +
+             double(boxes.axis[k][2][lane]) * p.z;
+    };
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for_each_corner([&](Point p) {
+      low = std::min(low, along(p));
+      high = std::max(high, along(p));
+    });
+    boxes.at[k][lane] = static_cast<float>(0.5 * (low + high));
+    boxes.half[k][lane] = static_cast<float>(0.5 * (high - low)) + kTurnedMargin + rounding;
+    volume *= 2 * double(boxes.half[k][lane]);
+  }
+  return volume;
+}
+
+/// @return their number; kNone where they would not be much smaller than the boxes along x, y and z
+std::uint32_t SourceTreeBuilder::add_turned_boxes(const std::vector<Cluster>& parts) {
+  constexpr double kMuchSmaller = 0.25;
+  if (!has_turned_boxes_) return SourceTree::kNone;
+  TurnedBoxes boxes{};
+  double turned = 0, straight = 0;
+  for (std::size_t lane = 0; lane < parts.size(); ++lane) {
+    Bounds bounds;
+    for (std::uint32_t i = parts[lane].begin; i < parts[lane].end; ++i) bounds.add(items_[i]);
+    double volume = 1;
+    for (int k = 0; k < 3; ++k) volume *= double(bounds.high[k]) - double(bounds.low[k]);
+    straight += volume;
+    turned += set_turned_box(boxes, lane, parts[lane]);
+  }
+  if (!(turned < kMuchSmaller * straight)) return SourceTree::kNone;
+  turned_.push_back(boxes);
+  return static_cast<std::uint32_t>(turned_.size() - 1);
+}
+
 std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Lines& lines, Context& context) {
   if (nodes_.size() % 256 == 0) context.check_limits();
   std::vector<Cluster> parts = {all};
@@ -201,6 +271,7 @@ std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Lines& lines
   const std::size_t self = nodes_.size();
   nodes_.emplace_back();
   Node node{};
+  node.turned = add_turned_boxes(parts);
   for (std::size_t lane = 0; lane < parts.size(); ++lane) {
     Lines of_child;
     if (parts[lane].size() == 1) {
