@@ -127,21 +127,21 @@ double seconds_of(const auto& work) {
 
 constexpr double kBodyGrowth = 1.25;
 
-/// Triangles of a sphere, about n: squares of a lattice of angles, halved.
+/// Triangles of a sphere, about n: each side of an octahedron in m^2, blown up.
 std::vector<delfront::Simplex> make_body(std::size_t n) {
-  const auto rows = static_cast<std::size_t>(std::sqrt(static_cast<double>(n) / 4) + 0.5);
-  const std::size_t columns = 2 * rows;
-  const auto at = [&](std::size_t i, std::size_t j) {
-    const double z = std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(rows));
-    return on_surface(1, static_cast<double>(j % columns) / static_cast<double>(columns), 0.5 * (1 + z));
-  };
+  const auto m = static_cast<int>(std::max(1.0, std::sqrt(static_cast<double>(n) / 8) + 0.5));
   std::vector<delfront::Simplex> body;
-  for (std::size_t i = 0; i < rows; ++i)
-    for (std::size_t j = 0; j < columns; ++j) {
-      const Point a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
-      body.push_back({{a, b, c}, 3});
-      body.push_back({{a, c, d}, 3});
-    }
+  for (int side = 0; side < 8; ++side) {
+    const auto at = [&](int i, int j) {
+      const Point p = {double(side & 1 ? -i : i), double(side & 2 ? -j : j), double(side & 4 ? i + j - m : m - i - j)};
+      return Point{0.45, 0.5, 0.55} + (0.3 / length(p)) * p;
+    };
+    for (int i = 0; i < m; ++i)
+      for (int j = 0; i + j < m; ++j) {
+        body.push_back({{at(i, j), at(i + 1, j), at(i, j + 1)}, 3});
+        if (i + j + 1 < m) body.push_back({{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, 3});
+      }
+  }
   return body;
 }
 

@@ -203,8 +203,9 @@ SourceTree::Lanes SourceTree::squared_distance(const TurnedBoxes& boxes, const Q
   Lanes sum = {};
   for (int k = 0; k < 3; ++k) {
     const Lanes(&axis)[3] = boxes.axis[k];
-    Lanes gap = absolute(axis[0] * query.middle[0] + axis[1] * query.middle[1] + axis[2] * query.middle[2] -
-                         boxes.at[k]) - boxes.half[k];
+    Lanes gap =
+        absolute(axis[0] * query.middle[0] + axis[1] * query.middle[1] + axis[2] * query.middle[2] - boxes.at[k]) -
+        boxes.half[k];
     if (!is_point)
       gap -= absolute(axis[0]) * query.half[0] + absolute(axis[1]) * query.half[1] + absolute(axis[2]) * query.half[2];
     gap = gap > 0 ? gap : Lanes{};
@@ -410,6 +411,47 @@ std::vector<std::uint32_t> SourceTree::below(const Box& box, double size) const 
   });
   std::sort(found.begin(), found.end());
   return found;
+}
+
+bool SourceTree::candidates(const Box& box, std::size_t most, Hint& hint, std::vector<Candidate>& found,
+                            std::size_t& visited) const {
+  found.clear();
+  const Point centre = box.centre();
+  least(centre, hint);
+  visited += kWidth;
+  if (hint.term == kNone) {  // all are infinite at the centre: nothing is known
+    if (terms_.size() > most) return false;
+    for (std::uint32_t t = 0; t < terms_.size(); ++t) found.push_back({0, t});
+    return true;
+  }
+  const auto ceiling = [&](const SourceTerm& term) {
+    return term.factor * term.law((term.shape.distance(centre) + 0.5 * box.diagonal()) * (1 + 1e-12)) * (1 + 1e-12);
+  };
+  Query query = start(box.low, box.high, ceiling(terms_[hint.term]), hint.bin);
+  const double bound = query.best;
+  std::size_t left = 4 * most;
+  search(query, nullptr, [&](std::uint32_t t, float) {
+    if (left == 0) return;
+    --left;
+    ++visited;
+    const double value = terms_[t].lower_bound(box);
+    if (value > bound) return;
+    float floor = static_cast<float>(value);
+    if (static_cast<double>(floor) > value) floor = std::nextafter(floor, 0.0f);
+    found.push_back({floor, t});
+    if (found.size() > most) left = 0;
+    if (left == 0) set_best(query, 0);  // leaves next to nothing to search
+  });
+  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+    return a.floor != b.floor ? a.floor < b.floor : a.term < b.term;
+  });
+  return left > 0;
+}
+
+Box SourceTree::box() const {
+  Box box;
+  for (const SourceTerm& term : terms_) box.add(term.shape.box());
+  return box;
 }
 
 double SourceTree::largest() const {

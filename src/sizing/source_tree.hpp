@@ -30,6 +30,9 @@ class SourceTree {
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr int kWidth = 8, kBins = 32;
   bool empty() const { return terms_.empty(); }
+  std::size_t size() const { return terms_.size(); }
+  const SourceTerm& term(std::uint32_t place) const { return terms_[place]; }  ///< in the order of the tree
+  Box box() const;
 
   /// What a search found, from which the next one near by may start; changes its time only.
   struct Hint {
@@ -46,6 +49,16 @@ class SourceTree {
   /// @brief Numbers (as given) of the terms below `size` somewhere in the box as far as lower bounds tell (at p:
   /// exactly those), ascending.
   std::vector<std::uint32_t> below(const Box& box, double size) const;
+  /// A term that may be the least in a box, and what it asks for there at least, rounded down.
+  struct Candidate {
+    float floor;
+    std::uint32_t term;  // see term()
+  };
+  /// @brief All terms that may be the least somewhere in a box, in ascending order of `floor`.
+  /// @param visited  raised by the number of terms looked at
+  /// @return false where they are more than `most`, or to find them would take too long; `found` then holds some
+  bool candidates(const Box& box, std::size_t most, Hint& hint, std::vector<Candidate>& found,
+                  std::size_t& visited) const;
   double largest() const;
   double smallest() const;  ///< the least delta0
 

@@ -11,13 +11,13 @@
 namespace delfront {
 namespace {
 
-constexpr float kMargin = 0x1p-19f;   // of boxes, in units of the extent
-constexpr double kWiden = 1 + 4e-6;   // of reaches
-constexpr float kLeastReach = 1e-6f;  // its square must not vanish
-constexpr double kShort = 1 - 2e-6;      // axes, for the rounding of products with them
+constexpr float kMargin = 0x1p-19f;     // of boxes, in units of the extent
+constexpr double kWiden = 1 + 4e-6;     // of reaches
+constexpr float kLeastReach = 1e-6f;    // its square must not vanish
+constexpr double kShort = 1 - 2e-6;     // axes, for the rounding of products with them
 constexpr float kTurnedMargin = 8e-6f;  // of turned boxes
-constexpr double kRoom = 1.2;         // places are expected within so many extents of the centre
-constexpr int kMedianDepth = 24;      // of nodes; below it clusters are halved only
+constexpr double kRoom = 1.2;           // places are expected within so many extents of the centre
+constexpr int kMedianDepth = 24;        // of nodes; below it clusters are halved only
 
 float rounded_up(double value) {
   const float f = static_cast<float>(value);
