@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Size sources (S5): time of one evaluation for growing numbers of sources, by scanning all and by the tree.
 //
-//   size_field_bench [--sources 10,100,...] [--layout all|scattered|curves|surfaces] [--points N] [--repeat N]
-//   [--methods scan,tree] size_field_bench --given SOURCES PLACES OUT     sources and places from files, as
-//   compare_sizes.py gives them
+//   size_field_bench [--sources 10,100,...] [--layout scattered,curves,surfaces,body] [--points N] [--repeat N]
+//                    [--methods scan,tree,lists,boundary]
+//   size_field_bench --given SOURCES PLACES OUT     sources and places from files, as compare_sizes.py gives them
 //
 // Points lie in the unit cube in Hilbert order; sources are points, segments and triangles of all three laws, scattered
-// in the cube, along curves, or on surfaces. One line a case: layout, sources, method, build seconds, million
-// evaluations a second (median; of this process's own
-// time on one core), and the sum of all sizes, which must not depend on the method.
+// in the cube, along curves, or on surfaces. Layout body: the triangles of a sphere, all of one size that grows with
+// the distance, as sizes on a patch are; method boundary, for this layout, gives their corners to the field of sizes
+// from the boundary instead. One line a case: layout, sources, method, build seconds, million evaluations a second
+// (median; of this process's own time on one core), megabytes that the field took, million lower bounds over small
+// boxes a second, and the sum of all sizes, which must not depend on the method.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +29,7 @@
 #include <vector>
 
 #include "base/hilbert.hpp"
+#include "delfront/size_field.hpp"
 #include "delfront/size_sources.hpp"
 
 namespace {
@@ -110,23 +114,95 @@ std::vector<Point> make_points(std::size_t n) {
   return ordered;
 }
 
+double megabytes_in_use() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd) * 1e-6;
+}
+
 double seconds_of(const auto& work) {
   const std::clock_t start = std::clock();
   work();
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-void run_case(const std::string& layout, std::size_t n, bool is_tree, std::size_t num_points, int repeat) {
+constexpr double kBodyGrowth = 1.25;
+
+/// Triangles of a sphere, about n: each side of an octahedron in m^2, blown up.
+std::vector<delfront::Simplex> make_body(std::size_t n) {
+  const auto m = static_cast<int>(std::max(1.0, std::sqrt(static_cast<double>(n) / 8) + 0.5));
+  std::vector<delfront::Simplex> body;
+  for (int side = 0; side < 8; ++side) {
+    const auto at = [&](int i, int j) {
+      const Point p = {double(side & 1 ? -i : i), double(side & 2 ? -j : j), double(side & 4 ? i + j - m : m - i - j)};
+      return Point{0.45, 0.5, 0.55} + (0.3 / length(p)) * p;
+    };
+    for (int i = 0; i < m; ++i)
+      for (int j = 0; i + j < m; ++j) {
+        body.push_back({{at(i, j), at(i + 1, j), at(i, j + 1)}, 3});
+        if (i + j + 1 < m) body.push_back({{at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}, 3});
+      }
+  }
+  return body;
+}
+
+std::unique_ptr<delfront::SizeField> build_body(std::size_t n, const std::string& method,
+                                                const delfront::SourceFieldOptions& options) {
   delfront::Context context;
-  std::vector<SizeSource> sources = make_sources(layout, n);
+  const double h = 1 / std::sqrt(static_cast<double>(n));
+  if (method == "boundary") {
+    delfront::BoundarySizes boundary;
+    boundary.growth = kBodyGrowth;
+    for (const delfront::Simplex& triangle : make_body(2 * n)) boundary.points.push_back(triangle.corner[0]);
+    boundary.size.assign(boundary.points.size(), h);
+    return build_boundary_size_field(boundary, context);
+  }
+  std::vector<SizeSource> sources;
+  delfront::SizeLaw law;
+  law.kind = delfront::SizeLaw::Kind::step;
+  law.delta0 = h;
+  for (const delfront::Simplex& triangle : make_body(n)) sources.push_back({triangle, law, {}, {}, ""});
+  return build_source_size_field(std::move(sources), options, context);
+}
+
+std::unique_ptr<delfront::SizeField> build_field(const std::string& layout, std::size_t n, const std::string& method) {
   delfront::SourceFieldOptions options;
-  options.search = is_tree ? delfront::SourceSearch::tree : delfront::SourceSearch::scan;
+  options.search = method == "scan"    ? delfront::SourceSearch::scan
+                   : method == "tree"  ? delfront::SourceSearch::tree
+                   : method == "lists" ? delfront::SourceSearch::lists
+                                       : delfront::SourceSearch::automatic;
+  if (layout == "body") {
+    options.growth = kBodyGrowth;
+    return build_body(n, method, options);
+  }
+  delfront::Context context;
+  return build_source_size_field(make_sources(layout, n), options, context);
+}
+
+/// Boxes as the gridding of a core asks for: one in eight a hundredth wide, the others smaller.
+double bounds_a_second(const delfront::SizeField& field, const std::vector<Point>& at) {
+  const std::size_t step = std::max<std::size_t>(1, at.size() / 20'000);
+  double sum = 0;
+  std::size_t count = 0;
+  const double seconds = seconds_of([&] {
+    for (std::size_t i = 0; i < at.size(); i += step, ++count) {
+      const double half = count % 8 == 0 ? 0.005 : 0.001;
+      const Point side{half, half, half};
+      sum += field.lower_bound({at[i] - side, at[i] + side});
+    }
+  });
+  return sum > 0 ? static_cast<double>(count) / seconds : 0;
+}
+
+void run_case(const std::string& layout, std::size_t n, const std::string& method, std::size_t num_points, int repeat) {
+  const bool is_scan = method == "scan";
+  const double before = megabytes_in_use();
   std::unique_ptr<delfront::SizeField> field;
-  const double build = seconds_of([&] { field = build_source_size_field(std::move(sources), options, context); });
+  const double build = seconds_of([&] { field = build_field(layout, n, method); });
+  const double megabytes = megabytes_in_use() - before;
   // Scanning: fewer points, so that a case stays within seconds.
   const std::size_t scanned = std::max<std::size_t>(1000, 100'000'000 / n);
   const std::vector<Point> all = make_points(num_points);
-  const std::size_t step = is_tree ? 1 : std::max<std::size_t>(1, num_points / scanned);
+  const std::size_t step = is_scan ? std::max<std::size_t>(1, num_points / scanned) : 1;
   std::vector<Point> at;
   for (std::size_t i = 0; i < all.size(); i += step) at.push_back(all[i]);
   std::vector<double> size(at.size()), times;
@@ -134,9 +210,10 @@ void run_case(const std::string& layout, std::size_t n, bool is_tree, std::size_
   std::sort(times.begin(), times.end());
   double sum = 0;
   for (std::size_t i = 0; i < at.size(); ++i)
-    if (is_tree ? i % std::max<std::size_t>(1, num_points / scanned) == 0 : true) sum += size[i];
-  fmt::print("{:10} {:7} {:5} {:8.3f} {:9.4g} {:.15g}\n", layout, n, is_tree ? "tree" : "scan", build,
-             static_cast<double>(at.size()) / times[times.size() / 2] * 1e-6, sum);
+    if (is_scan || i % std::max<std::size_t>(1, num_points / scanned) == 0) sum += size[i];
+  const double bounds = is_scan && n > 1000 ? 0 : bounds_a_second(*field, at);
+  fmt::print("{:10} {:7} {:8} {:8.3f} {:9.4g} {:8.1f} {:9.4g} {:.15g}\n", layout, n, method, build,
+             static_cast<double>(at.size()) / times[times.size() / 2] * 1e-6, megabytes, bounds * 1e-6, sum);
   std::fflush(stdout);
 }
 
@@ -182,7 +259,7 @@ int main(int argc, char** argv) try {
     run_given(argv[2], argv[3], argv[4]);
     return 0;
   }
-  std::vector<std::string> layouts = {"scattered", "curves", "surfaces"}, methods = {"scan", "tree"};
+  std::vector<std::string> layouts = {"scattered", "curves", "surfaces", "body"}, methods = {"scan", "tree"};
   std::vector<std::string> counts = {"10", "100", "1000", "10000", "100000"};
   std::size_t num_points = 1'000'000;
   int repeat = 3;
@@ -194,12 +271,12 @@ int main(int argc, char** argv) try {
     if (key == "--points") num_points = static_cast<std::size_t>(std::strtod(value.c_str(), nullptr));
     if (key == "--repeat") repeat = std::atoi(value.c_str());
   }
-  fmt::print("layout     sources  how   build s  Meval/s   sum of sizes\n");
+  fmt::print("layout     sources how       build s   Meval/s       MB Mbounds/s sum of sizes\n");
   for (const std::string& layout : layouts)
     for (const std::string& count : counts)
       for (const std::string& method : methods)
-        run_case(layout, static_cast<std::size_t>(std::strtod(count.c_str(), nullptr)), method == "tree", num_points,
-                 repeat);
+        if (layout == "body" || method != "boundary")
+          run_case(layout, static_cast<std::size_t>(std::strtod(count.c_str(), nullptr)), method, num_points, repeat);
   return 0;
 } catch (const std::exception& error) {
   fmt::print(stderr, "{}\n", error.what());

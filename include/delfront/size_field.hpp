@@ -43,6 +43,10 @@ class SizeField {
   }
 };
 
+/// @brief field.sizes() for many places, on all threads, in parts between which the run can be stopped.
+/// @throws Cancelled, LimitError
+void evaluate_sizes(const SizeField& field, std::span<const Point> at, std::span<double> size, const Context& context);
+
 /// @brief Sizes from the boundary (S1), growing into the volume.
 ///
 /// At distance s from a boundary point of size delta1 the size is at most max(delta1, (s (c - 1) + delta1) / c) with

@@ -106,6 +106,7 @@ enum class SourceSearch : std::uint8_t {
   automatic,  ///< the quicker one as measured in docs/sizes/sources.md
   scan,       ///< every source for every point
   tree,       ///< branch and bound in a tree of boxes
+  lists,      ///< an octree with the sources that matter in each cell; the tree where they are many
 };
 
 struct SourceFieldOptions {
@@ -114,6 +115,7 @@ struct SourceFieldOptions {
   double growth = std::numeric_limits<double>::infinity();
   double time = 0;                                ///< for sources that move
   SourceSearch search = SourceSearch::automatic;  ///< changes the time, never a bit of a result
+  Box domain;  ///< of `lists`: where most places will lie; empty: the box of the sources, half as wide again
 };
 
 /// @brief The minimum over any number of sources (S3, S4, S5; eq. 3.14), exact, at a cost that grows like the logarithm

@@ -36,7 +36,7 @@ Outcome generate(Model model, const Options& options, Context& context, std::sha
   if (!options.output.sizes) size.reset();
   give_back_free_memory();
   outcome.mesh = to_mesh(std::move(grid), model, context.threads);
-  if (size) add_size_field(outcome.mesh, *size);
+  if (size) add_size_field(outcome.mesh, *size, context);
   give_back_free_memory();
   const StageTimer timer(context, "measure");
   report.quality = measure_quality(outcome.mesh, context);

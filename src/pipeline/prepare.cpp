@@ -79,7 +79,7 @@ void warn_of_coarse_surface(const Model& model, const SizeOptions& options, Cont
 
 /// The field's size at every vertex, so that all sizes keep the growth. Vertices that the grid does not use are not
 /// asked for: some lie far outside, where a formula need not have a value.
-void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
+void set_vertex_sizes(TetComplex& complex, const SizeField& field, const Context& context) {
   std::vector<VertexIndex> used;
   std::vector<Point> places;
   for (VertexIndex v = 0; v < complex.num_vertices(); ++v) {
@@ -88,7 +88,7 @@ void set_vertex_sizes(TetComplex& complex, const SizeField& field) {
     places.push_back(complex.point(v));
   }
   std::vector<double> sizes(places.size());
-  field.sizes(places, sizes);
+  evaluate_sizes(field, places, sizes, context);
   for (std::size_t i = 0; i < used.size(); ++i) complex.vertex[used[i]].h = sizes[i];
 }
 
@@ -102,7 +102,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
   warn_of_coarse_surface(model, options.size, context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
-  set_vertex_sizes(prepared.grid.complex, *prepared.size);
+  set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;
 }
 

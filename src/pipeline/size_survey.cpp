@@ -178,6 +178,7 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context&
   std::vector<Sum> sums((leaves.size() + kGrain - 1) / kGrain);
   const Integral integral(domain, size);
   parallel_ranges(context.threads, leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    context.check_limits();
     for (std::size_t i = first; i < last; ++i) integral.add(octree.box(leaves[i]), 0, sums[first / kGrain]);
   });
   Sum all;

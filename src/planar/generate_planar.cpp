@@ -103,12 +103,12 @@ std::shared_ptr<const SizeField> build_size_field(const PlanarGrid& grid, const 
 }
 
 /// The field's size at every vertex, so that all sizes keep the growth.
-void set_vertex_sizes(TriComplex& complex, const SizeField& field) {
+void set_vertex_sizes(TriComplex& complex, const SizeField& field, const Context& context) {
   std::vector<Point> places;
   places.reserve(complex.point.size());
   for (const Point2 p : complex.point) places.push_back({p.x, p.y, 0});
   complex.h.resize(places.size());
-  field.sizes(places, complex.h);
+  evaluate_sizes(field, places, complex.h, context);
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
     split_segments(grid, *prepared.size, context);
     prepared.size = build_size_field(grid, options.size, largest, asked, context);
   }
-  set_vertex_sizes(grid.complex, *prepared.size);
+  set_vertex_sizes(grid.complex, *prepared.size, context);
   return prepared;
 }
 
@@ -162,7 +162,7 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
     grid.complex.index_vertices();
   report.warnings = grid.warnings;
   outcome.mesh = to_mesh(grid, domain);
-  if (options.output.sizes) add_size_field(outcome.mesh, *size);
+  if (options.output.sizes) add_size_field(outcome.mesh, *size, context);
   grid = {};
   const StageTimer timer(context, "measure");
   report.quality = measure_quality(outcome.mesh, context);

@@ -179,7 +179,7 @@ class Refinement {
     places_.resize(proposals_.size());
     sizes_.resize(proposals_.size());
     for (std::size_t i = 0; i < proposals_.size(); ++i) places_[i] = {proposals_[i].at.x, proposals_[i].at.y, 0};
-    size_.sizes(places_, sizes_);
+    evaluate_sizes(size_, places_, sizes_, context_);
     for (std::size_t i = 0; i < proposals_.size(); ++i)
       sizes_[i] = std::max(std::min(sizes_[i], grid_.region_h[proposals_[i].region]), proposals_[i].floor);
   }

@@ -27,9 +27,9 @@ std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const 
   return build_boundary_size_field(boundary, context);
 }
 
-void add_size_field(Mesh& mesh, const SizeField& size) {
+void add_size_field(Mesh& mesh, const SizeField& size, const Context& context) {
   Field h{"h", Field::On::vertices, CellType::vertex, 1, std::vector<double>(mesh.points.size())};
-  size.sizes(mesh.points, h.values);
+  evaluate_sizes(size, mesh.points, h.values, context);
   mesh.fields.push_back(std::move(h));
 }
 

@@ -28,7 +28,7 @@ std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const 
                                                   Context& context);
 
 /// @brief The wanted sizes at the points of a grid, as its field "h".
-void add_size_field(Mesh& mesh, const SizeField& size);
+void add_size_field(Mesh& mesh, const SizeField& size, const Context& context);
 
 /// @brief The lesser of both, clamped to the options' hmin and hmax.
 std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/size_field.hpp"
 
 namespace delfront {
 
 namespace {
+
+constexpr std::size_t kPart = 1 << 12;  ///< places between looks at the limits
 
 class CombinedSizeField final : public SizeField {
  public:
@@ -66,6 +69,14 @@ class CombinedSizeField final : public SizeField {
 };
 
 }  // namespace
+
+void evaluate_sizes(const SizeField& field, std::span<const Point> at, std::span<double> size, const Context& context) {
+  DELFRONT_CHECK(at.size() == size.size());
+  parallel_ranges(context.threads, at.size(), kPart, [&](std::size_t first, std::size_t last) {
+    context.check_limits();
+    field.sizes(at.subspan(first, last - first), size.subspan(first, last - first));
+  });
+}
 
 std::unique_ptr<SizeField> combine_size_fields(std::vector<std::shared_ptr<const SizeField>> parts, double hmin,
                                                double hmax) {

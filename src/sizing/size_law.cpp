@@ -286,4 +286,20 @@ double LimitedLaw::reach(double size) const {
   return far * (1 + 1e-6);
 }
 
+double LimitedLaw::steepest(double r) const {
+  const double rho = relative_distance(law_, r), unit = law_.delta0 / law_.r1;
+  double slope = kInfinity;
+  if (law_.kind == SizeLaw::Kind::power && law_.gamma >= 1) {
+    slope = unit * law_.gamma * std::pow(rho, law_.gamma - 1);
+  } else if (law_.kind == SizeLaw::Kind::exponential) {
+    slope = unit * law_.gamma * std::exp(law_.gamma * rho);
+  } else if (law_.kind == SizeLaw::Kind::polynomial) {
+    double sum = 0;
+    for (std::size_t i = law_.polynomial.size(); i-- > 0;)
+      sum = sum * rho + static_cast<double>(i + 1) * std::abs(law_.polynomial[i]);
+    slope = unit * sum;
+  }
+  return std::min(slope, slope_) * (1 + 1e-9);
+}
+
 }  // namespace delfront

@@ -24,6 +24,9 @@ class LimitedLaw {
   /// more than the least such distance.
   double reach(double size) const;
 
+  /// @return what the slope of the law does not exceed from 0 to r; infinite where nothing is known
+  double steepest(double r) const;
+
   /// @return what no size exceeds
   double largest() const;
   double delta0() const { return law_.delta0; }

@@ -61,6 +61,7 @@ Box SizeOctree::box(const OctreeLeaf& leaf) const {
 
 void SizeOctree::set_bounds(std::vector<OctreeLeaf>& cells, const SizeField& size, Context& context) const {
   parallel_ranges(context.threads, cells.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    context.check_limits();
     for (std::size_t i = first; i < last; ++i) cells[i].low = size.lower_bound(box(cells[i]));
   });
 }
@@ -100,9 +101,8 @@ void SizeOctree::add_corners(std::vector<OctreeLeaf>& cells, const SizeField& si
   corner_of_key_.insert(corner_of_key_.end(), added.begin(), added.end());
   std::inplace_merge(corner_of_key_.begin(), corner_of_key_.begin() + middle, corner_of_key_.end());
   corner_sizes_.resize(corners_.size());
-  parallel_ranges(context.threads, corners_.size() - first_new, kGrain, [&](std::size_t first, std::size_t last) {
-    size.sizes({&corners_[first_new + first], last - first}, {&corner_sizes_[first_new + first], last - first});
-  });
+  const std::size_t num_new = corners_.size() - first_new;
+  evaluate_sizes(size, {corners_.data() + first_new, num_new}, {corner_sizes_.data() + first_new, num_new}, context);
   for (OctreeLeaf& leaf : cells)
     for (int c = 0; c < num_corners(); ++c)
       leaf.corner[static_cast<std::size_t>(c)] = place_of(corner_key(leaf, c))->second;

@@ -215,6 +215,13 @@ double PlacedShape::distance_to_frustum(Point q) const {
   return std::min(best, std::hypot(rho - a_ - t * side_r, z - t * c_));
 }
 
+int PlacedShape::corners(Point corner[3]) const {
+  corner[0] = at_;
+  corner[1] = at_ + u_;
+  corner[2] = at_ + v_;
+  return kind_ == Kind::point ? 1 : kind_ == Kind::segment ? 2 : kind_ == Kind::triangle ? 3 : 0;
+}
+
 double PlacedShape::distance(Point p) const {
   switch (kind_) {
     case Kind::point:

@@ -19,6 +19,8 @@ class PlacedShape {
   /// @return distance, 0 inside
   double distance(Point p) const;
   const Box& box() const { return box_; }
+  /// @return number of corners of a point, line or triangle; 0 of other shapes
+  int corners(Point corner[3]) const;
 
  private:
   enum class Kind : std::uint8_t { point, segment, triangle, box, ball, frustum, facets };

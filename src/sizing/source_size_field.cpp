@@ -13,6 +13,7 @@
 #include "delfront/errors.hpp"
 #include "delfront/size_sources.hpp"
 #include "fmt/format.h"
+#include "sizing/source_lists.hpp"
 #include "sizing/source_tree.hpp"
 
 namespace delfront {
@@ -40,6 +41,7 @@ class SourceSizeField final : public SizeField {
   double stretched_lower_bound(const Box& box) const;
 
   SourceTree plain_;
+  std::unique_ptr<const SourceLists> lists_;
   // Of those with stretchings: what they ask for in their least and in their greatest direction, and as delta.
   SourceTree least_, greatest_;
   std::vector<Stretching> stretching_;
@@ -49,6 +51,11 @@ class SourceSizeField final : public SizeField {
 
 double least_factor(const Stretching& s) { return std::min({1.0, s.s1, s.s2}); }
 double greatest_factor(const Stretching& s) { return std::max({1.0, s.s1, s.s2}); }
+
+Box widened(const Box& box) {
+  const double more = 0.25 * box.longest_side();
+  return {box.low - Point{more, more, more}, box.high + Point{more, more, more}};
+}
 
 SourceSizeField::SourceSizeField(const std::vector<SizeSource>& sources, const SourceFieldOptions& options,
                                  Context& context) {
@@ -74,6 +81,9 @@ SourceSizeField::SourceSizeField(const std::vector<SizeSource>& sources, const S
   is_scanned_ =
       options.search == SourceSearch::scan || (options.search == SourceSearch::automatic && plain.size() < kScanBelow);
   plain_ = SourceTree(std::move(plain), context);
+  if (options.search == SourceSearch::lists && !plain_.empty())
+    lists_ = std::make_unique<SourceLists>(plain_, options.domain.is_empty() ? widened(plain_.box()) : options.domain,
+                                           context);
   least_ = SourceTree(std::move(least), context);
   greatest_ = SourceTree(std::move(greatest), context);
 }
@@ -97,6 +107,7 @@ Metric SourceSizeField::metric_at(Point at, Hints& hints) const {
 
 void SourceSizeField::sizes(std::span<const Point> at, std::span<double> size) const {
   DELFRONT_CHECK(at.size() == size.size());
+  if (is_isotropic() && lists_) return lists_->least(plain_, at, size);
   if (is_isotropic() && !is_scanned_) return plain_.least(at, size);
   Hints hints;
   for (std::size_t i = 0; i < at.size(); ++i) {

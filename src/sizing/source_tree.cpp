@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <random>
 #if defined(__AVX__)
@@ -88,8 +89,9 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
       builder.choose_first_sizes();
     else
       builder.choose_sizes(sample_sizes());
-    const auto order = builder.build(context);
+    const auto order = builder.build(pass == 1, context);
     std::copy(builder.edges().begin(), builder.edges().end(), edge_);
+    for (std::size_t b = 0; b < kBins; ++b) per_width_[b] = builder.width(b) > 0 ? 1 / builder.width(b) : 0;
     nodes_.assign(builder.nodes().size(), {});
     reaches_.assign(builder.nodes().size() * kBins, {});
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
@@ -97,8 +99,22 @@ SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_
       for (std::size_t c = 0; c < kWidth; ++c) {
         for (int k = 0; k < 3; ++k) nodes_[n].low[k][c] = from.low[k][c], nodes_[n].high[k][c] = from.high[k][c];
         nodes_[n].child[c] = from.child[c];
-        for (std::size_t b = 0; b < kBins; ++b) reaches_[b * nodes_.size() + n].squared[c] = from.reach[b][c];
+        nodes_[n].turned = from.turned;
+        for (std::size_t b = 0; b < kBins; ++b) {
+          reaches_[b * nodes_.size() + n].reach[c] = from.reach[b][c];
+          reaches_[b * nodes_.size() + n].fall[c] = from.fall[b][c];
+        }
       }
+    }
+    turned_.assign(builder.turned_boxes().size(), {});
+    for (std::size_t n = 0; n < turned_.size(); ++n) {
+      const SourceTreeBuilder::TurnedBoxes& from = builder.turned_boxes()[n];
+      for (std::size_t c = 0; c < kWidth; ++c)
+        for (int k = 0; k < 3; ++k) {
+          for (int j = 0; j < 3; ++j) turned_[n].axis[k][j][c] = from.axis[k][j][c];
+          turned_[n].at[k][c] = from.at[k][c];
+          turned_[n].half[k][c] = from.half[k][c];
+        }
     }
     std::vector<SourceTerm> sorted;
     std::vector<std::uint32_t> numbers;
@@ -125,31 +141,46 @@ std::vector<double> SourceTree::sample_sizes() const {
   return sizes;
 }
 
-SourceTree::Lanes SourceTree::Reach::lanes() const {
+SourceTree::Lanes SourceTree::Reach::squared(float below) const {
   using Halves = std::uint16_t __attribute__((vector_size(2 * kWidth)));
   using Words = std::uint32_t __attribute__((vector_size(4 * kWidth)));
-  return std::bit_cast<Lanes>(__builtin_convertvector(std::bit_cast<Halves>(squared), Words) << 16);
+  Halves halves;
+  std::memcpy(&halves, fall, sizeof(halves));
+  Lanes lanes;
+  std::memcpy(&lanes, reach, sizeof(lanes));
+  lanes -= below * std::bit_cast<Lanes>(__builtin_convertvector(halves, Words) << 16);
+  lanes = lanes > 0 ? lanes : Lanes{};
+  return lanes * lanes;
 }
 
-float SourceTree::Reach::lane(std::uint32_t k) const {
-  return std::bit_cast<float>(static_cast<std::uint32_t>(squared[k]) << 16);
+float SourceTree::Reach::squared(std::uint32_t lane, float below) const {
+  const float left = reach[lane] - below * std::bit_cast<float>(static_cast<std::uint32_t>(fall[lane]) << 16);
+  return left > 0 ? left * left : 0;
 }
 
-/// The first bin whose size is not below `size`.
-int SourceTree::bin_of(double size, int guess) const {
-  while (edge_[guess] < size) ++guess;
-  while (guess > 0 && !(edge_[guess - 1] < size)) --guess;
-  return guess;
+/// The first bin whose size is not below `size`, from that of the query; and where in it.
+void SourceTree::set_best(Query& query, double size) const {
+  int bin = query.bin;
+  while (edge_[bin] < size) ++bin;
+  while (bin > 0 && !(edge_[bin - 1] < size)) --bin;
+  query.best = size;
+  query.bin = bin;
+  query.below = 0;
+  if (per_width_[bin] > 0)
+    query.below = static_cast<float>(std::min(1.0, (edge_[bin] - size) * per_width_[bin]) * (1 - 1e-6));
 }
 
 SourceTree::Query SourceTree::start(Point low, Point high, double best, int bin) const {
-  Query query{{}, {}, best, bin_of(best, bin)};
+  Query query{{}, {}, {}, {}, best, bin, 0};
+  set_best(query, best);
   for (int k = 0; k < 3; ++k) {
     const auto place = [&](double x) {
       return std::min(kFar, std::max(-kFar, static_cast<float>((x - centre_[k]) * per_extent_)));
     };
     query.low[k] = place(low[k]);
     query.high[k] = place(high[k]);
+    query.middle[k] = 0.5f * (query.low[k] + query.high[k]);
+    query.half[k] = query.low[k] == query.high[k] ? 0 : (query.high[k] - query.middle[k]) * (1 + 1e-6f);
   }
   return query;
 }
@@ -164,6 +195,35 @@ SourceTree::Lanes SourceTree::squared_distance(const Lanes low[3], const Lanes h
     sum += gap * gap;
   }
   return sum;
+}
+
+SourceTree::Lanes SourceTree::squared_distance(const TurnedBoxes& boxes, const Query& query) {
+  const auto absolute = [](const Lanes& x) { return x < 0 ? -x : x; };
+  const bool is_point = query.half[0] == 0 && query.half[1] == 0 && query.half[2] == 0;
+  Lanes sum = {};
+  for (int k = 0; k < 3; ++k) {
+    const Lanes(&axis)[3] = boxes.axis[k];
+    Lanes gap =
+        absolute(axis[0] * query.middle[0] + axis[1] * query.middle[1] + axis[2] * query.middle[2] - boxes.at[k]) -
+        boxes.half[k];
+    if (!is_point)
+      gap -= absolute(axis[0]) * query.half[0] + absolute(axis[1]) * query.half[1] + absolute(axis[2]) * query.half[2];
+    gap = gap > 0 ? gap : Lanes{};
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// @return those that may be below query.best, as bits; how far away they are
+inline unsigned SourceTree::near_children(std::uint32_t id, const Reach& reach, const Query& query, Lanes& away) const {
+  const Node& node = nodes_[id];
+  away = squared_distance(node.low, node.high, query);
+  const Lanes within = reach.squared(query.below);
+  const unsigned mask = mask_of(away < within);
+  if (mask == 0 || node.turned == kNone) return mask;
+  const Lanes turned = squared_distance(turned_[node.turned], query);
+  away = away > turned ? away : turned;
+  return mask_of(away < within);
 }
 
 void SourceTree::prefetch(std::uint32_t child) const {
@@ -187,9 +247,9 @@ void SourceTree::search(Query& query, Frontier* frontier, const Visit& visit) co
   };
   const auto enter = [&](std::uint32_t id) {
     const Node& node = nodes_[id];
-    const Lanes away = squared_distance(node.low, node.high, query);
     const std::size_t bottom = top;
-    for (unsigned mask = mask_of(away < reaches[id].lanes()); mask != 0; mask &= mask - 1) {
+    Lanes away;
+    for (unsigned mask = near_children(id, reaches[id], query, away); mask != 0; mask &= mask - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(mask));
       push({away[lane], node.child[lane], id, lane}, bottom);
     }
@@ -198,9 +258,12 @@ void SourceTree::search(Query& query, Frontier* frontier, const Visit& visit) co
     enter(0);
   } else {
     if (!(frontier->filled >> query.bin & 1)) fill_reaches(query.bin, *frontier);
+    const Lanes zero = {};
     for (std::size_t g = 0; g * kWidth < frontier->size; ++g) {
       const Lanes away = squared_distance(frontier->low[g], frontier->high[g], query);
-      for (unsigned mask = mask_of(away < frontier->reach[query.bin][g]); mask != 0; mask &= mask - 1) {
+      Lanes reach = frontier->reach[query.bin][g] - query.below * frontier->fall[query.bin][g];
+      reach = reach > zero ? reach : zero;
+      for (unsigned mask = mask_of(away < reach * reach); mask != 0; mask &= mask - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(mask));
         Entry entry = frontier->entry[g * kWidth + lane];
         entry.squared = away[lane];
@@ -210,7 +273,7 @@ void SourceTree::search(Query& query, Frontier* frontier, const Visit& visit) co
   }
   while (top > 0) {
     const Entry entry = stack[--top];
-    const float reach = reaches[entry.parent].lane(entry.lane);
+    const float reach = reaches[entry.parent].squared(entry.lane, query.below);
     if (!(entry.squared < reach)) continue;
     if (entry.child & kTermBit) {
       visit(entry.child & ~kTermBit, reach);
@@ -240,8 +303,8 @@ void SourceTree::find_frontier(const Query& query, Frontier& frontier) const {
   Entry node{0, 0, kNone, 0};
   for (;;) {
     const Node& opened = nodes_[node.child];
-    const Lanes away = squared_distance(opened.low, opened.high, query);
-    unsigned mask = mask_of(away < reaches[node.child].lanes());
+    Lanes away;
+    unsigned mask = near_children(node.child, reaches[node.child], query, away);
     const std::size_t room = Frontier::kLanes - frontier.size - (last - first);
     if (static_cast<std::size_t>(std::popcount(mask)) > room) {
       add(node);
@@ -263,13 +326,16 @@ void SourceTree::find_frontier(const Query& query, Frontier& frontier) const {
 void SourceTree::fill_reaches(int bin, Frontier& frontier) const {
   const Reach* const reaches = row(bin);
   for (std::size_t g = 0; g * kWidth < frontier.size; ++g) {
-    Lanes lanes = {};
+    Lanes reach = {}, fall = {};
     const std::size_t used = std::min<std::size_t>(kWidth, frontier.size - g * kWidth);
     for (std::size_t k = 0; k < used; ++k) {
       const Entry& entry = frontier.entry[g * kWidth + k];
-      lanes[k] = reaches[entry.parent].lane(entry.lane);
+      const Reach& of = reaches[entry.parent];
+      reach[k] = of.reach[entry.lane];
+      fall[k] = std::bit_cast<float>(static_cast<std::uint32_t>(of.fall[entry.lane]) << 16);
     }
-    frontier.reach[bin][g] = lanes;
+    frontier.reach[bin][g] = reach;
+    frontier.fall[bin][g] = fall;
   }
   frontier.filled |= std::uint64_t(1) << bin;
 }
@@ -286,8 +352,7 @@ double SourceTree::least(Point p, Hint& hint, Frontier* frontier) const {
     if (away * away * unit > static_cast<double>(reach)) return;
     const double value = term.factor * term.law(away);
     if (!(value < query.best)) return;
-    query.best = value;
-    query.bin = bin_of(value, query.bin);
+    set_best(query, value);
     winner = t;
   });
   hint = {winner, query.bin};
@@ -331,8 +396,7 @@ double SourceTree::lower_bound(const Box& box) const {
   search(query, nullptr, [&](std::uint32_t t, float) {
     const double value = terms_[t].lower_bound(box);
     if (!(value < query.best)) return;
-    query.best = value;
-    query.bin = bin_of(value, query.bin);
+    set_best(query, value);
   });
   return query.best * (1 - 1e-13);
 }
@@ -347,6 +411,47 @@ std::vector<std::uint32_t> SourceTree::below(const Box& box, double size) const 
   });
   std::sort(found.begin(), found.end());
   return found;
+}
+
+bool SourceTree::candidates(const Box& box, std::size_t most, Hint& hint, std::vector<Candidate>& found,
+                            std::size_t& visited) const {
+  found.clear();
+  const Point centre = box.centre();
+  least(centre, hint);
+  visited += kWidth;
+  if (hint.term == kNone) {  // all are infinite at the centre: nothing is known
+    if (terms_.size() > most) return false;
+    for (std::uint32_t t = 0; t < terms_.size(); ++t) found.push_back({0, t});
+    return true;
+  }
+  const auto ceiling = [&](const SourceTerm& term) {
+    return term.factor * term.law((term.shape.distance(centre) + 0.5 * box.diagonal()) * (1 + 1e-12)) * (1 + 1e-12);
+  };
+  Query query = start(box.low, box.high, ceiling(terms_[hint.term]), hint.bin);
+  const double bound = query.best;
+  std::size_t left = 4 * most;
+  search(query, nullptr, [&](std::uint32_t t, float) {
+    if (left == 0) return;
+    --left;
+    ++visited;
+    const double value = terms_[t].lower_bound(box);
+    if (value > bound) return;
+    float floor = static_cast<float>(value);
+    if (static_cast<double>(floor) > value) floor = std::nextafter(floor, 0.0f);
+    found.push_back({floor, t});
+    if (found.size() > most) left = 0;
+    if (left == 0) set_best(query, 0);  // leaves next to nothing to search
+  });
+  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
+    return a.floor != b.floor ? a.floor < b.floor : a.term < b.term;
+  });
+  return left > 0;
+}
+
+Box SourceTree::box() const {
+  Box box;
+  for (const SourceTerm& term : terms_) box.add(term.shape.box());
+  return box;
 }
 
 double SourceTree::largest() const {

@@ -6,25 +6,26 @@
 #include <cmath>
 #include <limits>
 
+#include "Eigen/Eigenvalues"
+
 namespace delfront {
 namespace {
 
-constexpr float kMargin = 0x1p-19f;   // of boxes, in units of the extent
-constexpr double kWiden = 1 + 4e-6;   // of reaches
-constexpr float kLeastReach = 1e-6f;  // its square must not vanish
-constexpr double kRoom = 1.2;         // places are expected within so many extents of the centre
-constexpr int kMedianDepth = 24;      // of nodes; below it clusters are halved only
+constexpr float kMargin = 0x1p-19f;     // of boxes, in units of the extent
+constexpr double kWiden = 1 + 4e-6;     // of reaches
+constexpr float kLeastReach = 1e-6f;    // its square must not vanish
+constexpr double kShort = 1 - 2e-6;     // axes, for the rounding of products with them
+constexpr float kTurnedMargin = 8e-6f;  // of turned boxes
+constexpr double kRoom = 1.2;           // places are expected within so many extents of the centre
+constexpr int kMedianDepth = 24;        // of nodes; below it clusters are halved only
 
 float rounded_up(double value) {
   const float f = static_cast<float>(value);
   return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
 }
 
-/// The upper half of the least such number that is not below `value`.
-std::uint16_t upper_half(double value) {
-  const auto bits = std::bit_cast<std::uint32_t>(rounded_up(value));
-  return static_cast<std::uint16_t>((bits >> 16) + ((bits & 0xffff) != 0 ? 1 : 0));
-}
+/// The upper half of the largest such number that is not above `value`.
+std::uint16_t upper_half(float value) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(value) >> 16); }
 
 }  // namespace
 
@@ -85,21 +86,22 @@ void SourceTreeBuilder::choose_sizes(std::vector<double> sample) {
   edge_.back() = std::numeric_limits<double>::infinity();
 }
 
-void SourceTreeBuilder::set_tables() {
+double SourceTreeBuilder::width(std::size_t b) const {
+  const double low = b > 0 ? edge_[b - 1] : smallest_;
+  return std::isfinite(edge_[b]) && edge_[b] > low ? edge_[b] - low : 0;
+}
+
+void SourceTreeBuilder::set_items() {
   const std::size_t n = terms_.size();
-  reach_.resize(n * kBins);
   items_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const SourceTerm& term = terms_[i];
     Item& item = items_[i];
     item.term = static_cast<std::uint32_t>(i);
-    std::size_t first = kBins;
-    for (std::size_t b = kBins; b-- > 0;) {
-      const double reach = term.law.reach(edge_[b] / term.factor);
-      reach_[i * kBins + b] = reach < 0 ? -1.0f : std::max(kLeastReach, rounded_up(reach / extent_ * kWiden));
-      if (reach >= 0) first = b;
+    for (std::size_t s = 0; s < kSamples; ++s) {
+      const double reach = term.law.reach(edge_[s * (kBins - 5) / kSamples + 1] / term.factor);
+      item.reach[s] = reach < 0 ? -1.0f : std::max(kLeastReach, rounded_up(reach / extent_ * kWiden));
     }
-    for (std::size_t s = 0; s < kSamples; ++s) item.reach[s] = reach_[i * kBins + s * (kBins - 5) / kSamples + 1];
     const Box& box = term.shape.box();
     for (int k = 0; k < 3; ++k) {
       // Sides of moved and round shapes, and distances to them, round with the size of the coordinates.
@@ -110,15 +112,58 @@ void SourceTreeBuilder::set_tables() {
       item.high[k] = static_cast<float>((box.high[k] - centre_[k]) / extent_) + margin;
       item.key[k] = 0.5f * (item.low[k] + item.high[k]);
     }
-    item.key[3] = static_cast<float>(first);
+    const double least = term.factor * term.law.delta0();
+    item.key[3] = static_cast<float>(std::upper_bound(edge_.begin(), edge_.end(), least) - edge_.begin());
   }
 }
 
-std::vector<std::uint32_t> SourceTreeBuilder::build(Context& context) {
-  set_tables();
+SourceTreeBuilder::Lines::Lines() {
+  std::fill(low, low + 3, std::numeric_limits<float>::infinity());
+  std::fill(high, high + 3, -std::numeric_limits<float>::infinity());
+  std::fill(reach, reach + kBins, -1.0f);
+  std::fill(fall, fall + kBins, 0.0f);
+}
+
+/// The line above both, at the upper end of the bin as low as can be.
+void SourceTreeBuilder::Lines::add(const Lines& other) {
+  for (int k = 0; k < 3; ++k) {
+    low[k] = std::min(low[k], other.low[k]);
+    high[k] = std::max(high[k], other.high[k]);
+  }
+  for (std::size_t b = 0; b < kBins; ++b) {
+    if (other.reach[b] < 0) continue;
+    const float most = std::max(reach[b], other.reach[b]);
+    const float theirs = std::isfinite(most) ? other.fall[b] + (most - other.reach[b]) : 0;
+    fall[b] = reach[b] < 0 ? theirs : std::min(theirs, std::isfinite(most) ? fall[b] + (most - reach[b]) : 0);
+    reach[b] = most;
+  }
+}
+
+/// With F the inverse of the law, F(v) <= F(e) - (e - v) / (steepest slope up to F(e)) for v <= e.
+SourceTreeBuilder::Lines SourceTreeBuilder::lines_of(const Item& item) const {
+  const SourceTerm& term = terms_[item.term];
+  Lines lines;
+  std::copy(item.low, item.low + 3, lines.low);
+  std::copy(item.high, item.high + 3, lines.high);
+  for (std::size_t b = kBins; b-- > 0;) {
+    const double reach = term.law.reach(edge_[b] / term.factor);
+    if (reach < 0) break;  // and for smaller sizes
+    lines.reach[b] = rounded_up(reach / extent_ * kWiden + kLeastReach);
+    if (!std::isfinite(reach) || !(width(b) > 0)) continue;
+    const double steepest = term.factor * term.law.steepest(reach);
+    if (steepest < std::numeric_limits<double>::infinity())
+      lines.fall[b] = static_cast<float>(std::min(1e30, width(b) / (extent_ * steepest)));
+  }
+  return lines;
+}
+
+std::vector<std::uint32_t> SourceTreeBuilder::build(bool has_turned_boxes, Context& context) {
+  has_turned_boxes_ = has_turned_boxes;
+  set_items();
   nodes_.clear();
   nodes_.reserve(terms_.size() / 4 + 1);
-  build_node(make_cluster(0, static_cast<std::uint32_t>(items_.size())), 0, context);
+  Lines lines;
+  build_node(make_cluster(0, static_cast<std::uint32_t>(items_.size())), 0, lines, context);
   std::vector<std::uint32_t> order;
   order.reserve(items_.size());
   for (const Item& item : items_) order.push_back(item.term);
@@ -132,22 +177,81 @@ SourceTreeBuilder::Cluster SourceTreeBuilder::make_cluster(std::uint32_t begin, 
   return {begin, end, bounds.cost()};
 }
 
-void SourceTreeBuilder::set_child(Node& node, std::size_t lane, const Cluster& cluster) const {
-  Bounds bounds;
-  float reach[kBins];
-  std::fill(reach, reach + kBins, -1.0f);
-  for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
-    bounds.add(items_[i]);
-    const float* const from = &reach_[items_[i].term * kBins];
-    for (std::size_t b = 0; b < kBins; ++b) reach[b] = std::max(reach[b], from[b]);
+void SourceTreeBuilder::set_child(Node& node, std::size_t lane, const Lines& lines) {
+  constexpr float kNarrow = 1 - 4e-6f;  // sums of falls round
+  for (int k = 0; k < 3; ++k) node.low[k][lane] = lines.low[k], node.high[k][lane] = lines.high[k];
+  for (std::size_t b = 0; b < kBins; ++b) {
+    node.reach[b][lane] = lines.reach[b];
+    node.fall[b][lane] = upper_half(kNarrow * lines.fall[b]);
   }
-  for (int k = 0; k < 3; ++k) node.low[k][lane] = bounds.low[k], node.high[k][lane] = bounds.high[k];
-  for (std::size_t b = 0; b < kBins; ++b)
-    node.reach[b][lane] =
-        reach[b] < 0 ? std::uint16_t(0) : upper_half(std::min(3e38, double(reach[b]) * double(reach[b])));
 }
 
-std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Context& context) {
+/// Along the principal axes of the corners. @return its volume, infinite where a shape has no corners
+double SourceTreeBuilder::set_turned_box(TurnedBoxes& boxes, std::size_t lane, const Cluster& cluster) const {
+  const auto for_each_corner = [&](const auto& visit) {
+    Point corner[3];
+    for (std::uint32_t i = cluster.begin; i < cluster.end; ++i) {
+      const int n = terms_[items_[i].term].shape.corners(corner);
+      for (int k = 0; k < n; ++k) visit((1 / extent_) * (corner[k] - centre_));
+      if (n == 0) return false;
+    }
+    return true;
+  };
+  Point sum;
+  double count = 0;
+  const auto add = [&](Point p) {
+    sum = sum + p;
+    ++count;
+  };
+  if (!for_each_corner(add)) return std::numeric_limits<double>::infinity();
+  const Point mean = sum / count;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for_each_corner([&](Point p) {
+    const Eigen::Vector3d v(p.x - mean.x, p.y - mean.y, p.z - mean.z);
+    covariance += v * v.transpose();
+  });
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
+  const double far = std::abs(centre_.x) + std::abs(centre_.y) + std::abs(centre_.z);
+  const auto rounding = static_cast<float>(64 * std::numeric_limits<double>::epsilon() * far / extent_);
+  double volume = 1;
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) boxes.axis[k][j][lane] = static_cast<float>(kShort * axes(j, k));
+    const auto along = [&](Point p) {
+      return double(boxes.axis[k][0][lane]) * p.x + double(boxes.axis[k][1][lane]) * p.y +
+             double(boxes.axis[k][2][lane]) * p.z;
+    };
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for_each_corner([&](Point p) {
+      low = std::min(low, along(p));
+      high = std::max(high, along(p));
+    });
+    boxes.at[k][lane] = static_cast<float>(0.5 * (low + high));
+    boxes.half[k][lane] = static_cast<float>(0.5 * (high - low)) + kTurnedMargin + rounding;
+    volume *= 2 * double(boxes.half[k][lane]);
+  }
+  return volume;
+}
+
+/// @return their number; kNone where they would not be much smaller than the boxes along x, y and z
+std::uint32_t SourceTreeBuilder::add_turned_boxes(const std::vector<Cluster>& parts) {
+  constexpr double kMuchSmaller = 0.25;
+  if (!has_turned_boxes_) return SourceTree::kNone;
+  TurnedBoxes boxes{};
+  double turned = 0, straight = 0;
+  for (std::size_t lane = 0; lane < parts.size(); ++lane) {
+    Bounds bounds;
+    for (std::uint32_t i = parts[lane].begin; i < parts[lane].end; ++i) bounds.add(items_[i]);
+    double volume = 1;
+    for (int k = 0; k < 3; ++k) volume *= double(bounds.high[k]) - double(bounds.low[k]);
+    straight += volume;
+    turned += set_turned_box(boxes, lane, parts[lane]);
+  }
+  if (!(turned < kMuchSmaller * straight)) return SourceTree::kNone;
+  turned_.push_back(boxes);
+  return static_cast<std::uint32_t>(turned_.size() - 1);
+}
+
+std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Lines& lines, Context& context) {
   if (nodes_.size() % 256 == 0) context.check_limits();
   std::vector<Cluster> parts = {all};
   while (parts.size() < kWidth) {
@@ -167,10 +271,17 @@ std::uint32_t SourceTreeBuilder::build_node(Cluster all, int depth, Context& con
   const std::size_t self = nodes_.size();
   nodes_.emplace_back();
   Node node{};
+  node.turned = add_turned_boxes(parts);
   for (std::size_t lane = 0; lane < parts.size(); ++lane) {
-    set_child(node, lane, parts[lane]);
-    node.child[lane] =
-        parts[lane].size() == 1 ? parts[lane].begin | kTermBit : build_node(parts[lane], depth + 1, context);
+    Lines of_child;
+    if (parts[lane].size() == 1) {
+      of_child = lines_of(items_[parts[lane].begin]);
+      node.child[lane] = parts[lane].begin | kTermBit;
+    } else {
+      node.child[lane] = build_node(parts[lane], depth + 1, of_child, context);
+    }
+    set_child(node, lane, of_child);
+    lines.add(of_child);
   }
   nodes_[self] = node;
   return static_cast<std::uint32_t>(self);

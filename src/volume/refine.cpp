@@ -271,6 +271,7 @@ class Refinement {
     sizes_.resize(n);
     parallel_ranges(context_.threads, n, kGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) places_[i] = proposals_[order_[i].second].at;
+      context_.check_limits();
       size_.sizes({&places_[first], last - first}, {&sizes_[first], last - first});
     });
   }

@@ -168,11 +168,11 @@ TEST(PlaneCurvature, S9_points_read_off_a_drawing_give_no_nonsense) {
 
 TEST(PlaneCurvature, S9_noise_on_a_straight_line_is_laid_over_three) {
   Line line;
-  for (int i = 0; i <= 40; ++i) line.push_back({0.1 * i, i % 2 == 0 ? 1e-4 : -1e-4, 0});
+  for (int i = 0; i <= 40; ++i) line.push_back({0.1 * i, i % 2 == 0 ? 1e-3 : -1e-3, 0});
   Context context;
   const GeometrySources found = find_curvature_sizes(PlaneBuilder().add(line, false).model(), per_turn(12), context);
-  const double raw = 0.1 * 0.1 / 4e-4;  // radius of the circle through three
-  EXPECT_GT(size_at(found, line[20]), 2.9 * 2 * kPi * raw / 12);
+  const double raw = 0.1 * 0.1 / 4e-3;  // radius of the circle through three
+  EXPECT_NEAR(size_at(found, line[20]), 3 * 2 * kPi * raw / 12, 0.1);
 }
 
 TEST(PlaneCurvature, S9_straight_sides_and_corners_give_none) {
@@ -189,6 +189,15 @@ TEST(PlaneCurvature, S9_straight_sides_and_corners_give_none) {
   Model octagon = PlaneBuilder().add(ellipse(1, 1, 8), true).model();
   octagon.feature_angle = 50;
   EXPECT_NEAR(find_curvature_sizes(octagon, per_turn(24), context).report.smallest, 2 * kPi / 24, 1e-12);
+}
+
+TEST(PlaneCurvature, S9_rounding_of_coordinates_is_no_curvature) {
+  const Point at{1e6, -1e6, 0}, along{std::cos(0.3), std::sin(0.3), 0};
+  Line line{at - along};  // a place of 1e-10 here is what the coordinates resolve
+  for (int i = 0; i < 50; ++i) line.push_back(at + (1e-6 * i) * along);
+  line.push_back(at + along);
+  Context context;
+  EXPECT_EQ(find_curvature_sizes(PlaneBuilder().add(line, false).model(), per_turn(24), context).sources.size(), 0u);
 }
 
 TEST(PlaneCurvature, S9_a_flat_side_beside_a_fillet_stays_coarse) {

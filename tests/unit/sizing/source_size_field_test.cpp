@@ -103,6 +103,61 @@ TEST(SourceSizeField, S5_search_and_order_change_no_bit) {
   }
 }
 
+/// Sources of one size on a ball: many are nearly as near as the nearest, and lists stay long.
+std::vector<SizeSource> body_sources(int n, Random& random) {
+  std::vector<SizeSource> sources;
+  for (int i = 0; i < n; ++i) {
+    const Point p = random.point(1), at = (0.3 / std::max(1e-3, length(p))) * p;
+    SizeLaw law;
+    law.kind = SizeLaw::Kind::step;
+    law.delta0 = 0.01;
+    const Point u = cross(at, random.point(0.1)), v = cross(at, u);
+    sources.push_back({Simplex{{at, at + u, at + v}, 3}, law, {}, {}, ""});
+  }
+  return sources;
+}
+
+TEST(SourceSizeField, S5_lists_tree_and_scan_give_the_same_bits) {
+  Random random;
+  for (const int n : {1, 9, 100, 3000})
+    for (const bool is_body : {false, true})
+      for (const bool has_domain : {false, true}) {
+        const double growth = is_body || n == 100 ? 1.2 : kInfinity;
+        const auto sources = is_body ? body_sources(n, random) : random_sources(n, Kinds::all, random);
+        std::vector<Point> at;
+        for (int i = 0; i < 2000; ++i) at.push_back(i % 4 == 0 ? random_place(random) : random.point(1.2));
+        for (const int i : {1, 2, 3}) at.push_back(random.point(0) + Point{0.5 * i, 0.25 * i, 0});  // on sides of cells
+        Context context;
+        SourceFieldOptions options;
+        options.growth = growth;
+        options.search = SourceSearch::lists;
+        if (has_domain) options.domain = {{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}};
+        const auto lists = build_source_size_field(sources, options, context);
+        std::vector<double> by_lists(at.size()), by_tree(at.size()), by_scan(at.size());
+        lists->sizes(at, by_lists);
+        build(sources, growth)->sizes(at, by_tree);
+        build(sources, growth, SourceSearch::scan)->sizes(at, by_scan);
+        EXPECT_EQ(by_lists, by_scan) << "seed " << kSeed << " n " << n << " body " << is_body;
+        EXPECT_EQ(by_tree, by_scan) << "seed " << kSeed << " n " << n << " body " << is_body;
+      }
+}
+
+TEST(SourceSizeField, S5_flat_and_long_sources_far_from_the_origin) {
+  Random random;
+  for (const double far : {0.0, 1e3, 1e6}) {
+    std::vector<SizeSource> sources = body_sources(2000, random);
+    for (SizeSource& source : sources)
+      for (Point& corner : std::get<Simplex>(source.shape).corner) corner = corner + far * Point{1, -0.5, 0.25};
+    const auto tree = build(sources, 1.2), scan = build(sources, 1.2, SourceSearch::scan);
+    std::vector<Point> at;
+    for (int i = 0; i < 2000; ++i) at.push_back(far * Point{1, -0.5, 0.25} + random_place(random));
+    std::vector<double> size(at.size()), again(at.size());
+    tree->sizes(at, size);
+    scan->sizes(at, again);
+    EXPECT_EQ(size, again) << "seed " << kSeed << " far " << far;
+  }
+}
+
 TEST(SourceSizeField, S5_runs_of_near_places_change_no_bit) {
   Random random;
   for (const int n : {3, 40, 4000})
