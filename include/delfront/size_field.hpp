@@ -24,6 +24,10 @@ class SizeField {
   /// @throws InputError  the field has no valid value there (place and value are named)
   virtual void sizes(std::span<const Point> at, std::span<double> size) const = 0;
 
+  /// @brief Lower the given sizes to those of the field where these are less. A field that can tell early that it has
+  /// nothing lower to say overrides this: of many fields few have a say at a place.
+  virtual void lower_sizes(std::span<const Point> at, std::span<double> size) const;
+
   /// @brief Wanted metric at each point. The default is isotropic: size^-2 times the identity.
   virtual void metrics(std::span<const Point> at, std::span<Metric> metric) const;
 

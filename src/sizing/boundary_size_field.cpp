@@ -38,6 +38,12 @@ void SizeField::metrics(std::span<const Point> at, std::span<Metric> metric) con
   for (std::size_t i = 0; i < at.size(); ++i) metric[i] = isotropic_metric(size[i]);
 }
 
+void SizeField::lower_sizes(std::span<const Point> at, std::span<double> size) const {
+  std::vector<double> own(at.size());
+  sizes(at, own);
+  for (std::size_t i = 0; i < at.size(); ++i) size[i] = std::min(size[i], own[i]);
+}
+
 namespace {
 
 constexpr int kLeafPoints = 8;
@@ -116,7 +122,11 @@ class BoundarySizeField final : public SizeField {
  public:
   BoundarySizeField(const BoundarySizes& boundary, Context& context);
 
-  void sizes(std::span<const Point> at, std::span<double> size) const override;
+  void sizes(std::span<const Point> at, std::span<double> size) const override {
+    std::fill(size.begin(), size.end(), hmax_);
+    lower_sizes(at, size);
+  }
+  void lower_sizes(std::span<const Point> at, std::span<double> size) const override;
   double lower_bound(const Box& box) const override;
   double largest() const override { return hmax_; }
 
@@ -350,18 +360,18 @@ Query BoundarySizeField::start(Point low, Point high, double best) const {
           kNoLeaf};
 }
 
-void BoundarySizeField::sizes(std::span<const Point> at, std::span<double> size) const {
+void BoundarySizeField::lower_sizes(std::span<const Point> at, std::span<double> size) const {
   DELFRONT_CHECK(at.size() == size.size());
   std::uint32_t winner = kNoLeaf;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    Query query = start(at[i], at[i], hmax_);
+    Query query = start(at[i], at[i], std::min(size[i], hmax_));
     if (winner != kNoLeaf) {
       search_leaf(winner, query);
       query.winner = winner;
     }
     if (query.best > hmin_) search(query);  // at hmin nothing can be lower
     winner = query.winner;
-    size[i] = clamped(query.best);
+    size[i] = std::min(size[i], clamped(query.best));
   }
 }
 

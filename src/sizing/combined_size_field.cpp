@@ -26,12 +26,15 @@ class CombinedSizeField final : public SizeField {
   void sizes(std::span<const Point> at, std::span<double> size) const override {
     DELFRONT_CHECK(at.size() == size.size());
     parts_[0]->sizes(at, size);
-    std::vector<double> other(parts_.size() > 1 ? at.size() : 0);
-    for (std::size_t k = 1; k < parts_.size(); ++k) {
-      parts_[k]->sizes(at, other);
-      for (std::size_t i = 0; i < at.size(); ++i) size[i] = std::min(size[i], other[i]);
-    }
+    for (std::size_t k = 1; k < parts_.size(); ++k) parts_[k]->lower_sizes(at, size);
     for (double& h : size) h = std::clamp(h, hmin_, hmax_);
+  }
+
+  void lower_sizes(std::span<const Point> at, std::span<double> size) const override {
+    if (hmin_ > 0) return SizeField::lower_sizes(at, size);  // a part may be below it
+    for (const auto& part : parts_) part->lower_sizes(at, size);
+    if (std::isfinite(hmax_))
+      for (double& h : size) h = std::min(h, hmax_);
   }
 
   void metrics(std::span<const Point> at, std::span<Metric> metric) const override {

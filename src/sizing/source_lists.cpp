@@ -114,13 +114,13 @@ const SourceLists::Cell& SourceLists::find_leaf(const Key& key, Path& path) cons
   return cells_[cell];
 }
 
-void SourceLists::least(const SourceTree& tree, std::span<const Point> at, std::span<double> size) const {
-  if (cells_.empty()) return tree.least(at, size);  // a domain without extent
+void SourceLists::lower(const SourceTree& tree, std::span<const Point> at, std::span<double> size) const {
+  if (cells_.empty()) return tree.lower(at, size);  // a domain without extent
   Path path;
   Key key;
   std::size_t run = 0;  // places up to here are done; those from here to i ask the tree
   const auto ask_tree = [&](std::size_t end) {
-    if (run < end) tree.least(at.subspan(run, end - run), size.subspan(run, end - run));
+    if (run < end) tree.lower(at.subspan(run, end - run), size.subspan(run, end - run));
     run = end;
   };
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -128,7 +128,7 @@ void SourceLists::least(const SourceTree& tree, std::span<const Point> at, std::
     const Cell& leaf = find_leaf(key, path);
     if (leaf.first == kUseTree) continue;
     ask_tree(i);
-    double best = kInfinity;
+    double best = size[i];
     for (std::uint32_t j = leaf.first; j < leaf.first + leaf.count; ++j) {
       if (!(static_cast<double>(lists_[j].floor) < best)) break;
       best = std::min(best, tree.term(lists_[j].term)(at[i]));

@@ -23,8 +23,8 @@ class SourceLists {
   SourceLists() = default;
   SourceLists(const SourceTree& tree, const Box& domain, Context& context);
 
-  /// @brief The least terms at many places; `tree` is that of the constructor.
-  void least(const SourceTree& tree, std::span<const Point> at, std::span<double> size) const;
+  /// @brief Lower the given sizes to the least terms where these are less; `tree` is that of the constructor.
+  void lower(const SourceTree& tree, std::span<const Point> at, std::span<double> size) const;
 
  private:
   static constexpr std::uint32_t kUseTree = 0xffffffffu;

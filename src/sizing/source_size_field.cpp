@@ -27,6 +27,7 @@ class SourceSizeField final : public SizeField {
   SourceSizeField(const std::vector<SizeSource>& sources, const SourceFieldOptions& options, Context& context);
 
   void sizes(std::span<const Point> at, std::span<double> size) const override;
+  void lower_sizes(std::span<const Point> at, std::span<double> size) const override;
   void metrics(std::span<const Point> at, std::span<Metric> metric) const override;
   bool is_isotropic() const override { return stretching_.empty(); }
   double lower_bound(const Box& box) const override;
@@ -107,7 +108,10 @@ Metric SourceSizeField::metric_at(Point at, Hints& hints) const {
 
 void SourceSizeField::sizes(std::span<const Point> at, std::span<double> size) const {
   DELFRONT_CHECK(at.size() == size.size());
-  if (is_isotropic() && lists_) return lists_->least(plain_, at, size);
+  if (is_isotropic() && lists_) {
+    std::fill(size.begin(), size.end(), kInfinity);
+    return lists_->lower(plain_, at, size);
+  }
   if (is_isotropic() && !is_scanned_) return plain_.least(at, size);
   Hints hints;
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -118,6 +122,12 @@ void SourceSizeField::sizes(std::span<const Point> at, std::span<double> size) c
     const Metric metric = metric_at(at[i], hints);
     size[i] = metric == Metric{0, 0, 0, 0, 0, 0} ? kInfinity : least_size(metric);
   }
+}
+
+void SourceSizeField::lower_sizes(std::span<const Point> at, std::span<double> size) const {
+  DELFRONT_CHECK(at.size() == size.size());
+  if (!is_isotropic() || is_scanned_) return SizeField::lower_sizes(at, size);
+  lists_ ? lists_->lower(plain_, at, size) : plain_.lower(at, size);
 }
 
 void SourceSizeField::metrics(std::span<const Point> at, std::span<Metric> metric) const {

@@ -340,10 +340,10 @@ void SourceTree::fill_reaches(int bin, Frontier& frontier) const {
   frontier.filled |= std::uint64_t(1) << bin;
 }
 
-double SourceTree::least(Point p, Hint& hint, Frontier* frontier) const {
+double SourceTree::least(Point p, Hint& hint, Frontier* frontier, double bound) const {
   std::uint32_t winner = hint.term;
   const std::uint32_t tried = hint.term;
-  Query query = start(p, p, tried == kNone ? kInfinity : terms_[tried](p), hint.bin);
+  Query query = start(p, p, tried == kNone ? bound : std::min(bound, terms_[tried](p)), hint.bin);
   const double unit = 1 / (extent_ * extent_);
   search(query, frontier, [&](std::uint32_t t, float reach) {
     if (t == tried) return;
@@ -362,15 +362,15 @@ double SourceTree::least(Point p, Hint& hint, Frontier* frontier) const {
 void SourceTree::least(std::span<const Point> at, std::span<double> size) const {
   Hint hint;
   if (at.size() < kLeastChunk) {
-    for (std::size_t i = 0; i < at.size(); ++i) size[i] = least(at[i], hint, nullptr);
+    for (std::size_t i = 0; i < at.size(); ++i) size[i] = least(at[i], hint, nullptr, kNoBound);
     return;
   }
   Frontier frontier{};
   for (std::size_t begin = 0; begin < at.size(); begin += kChunk) {
     const std::size_t end = std::min(at.size(), begin + kChunk);
-    size[begin] = least(at[begin], hint, nullptr);
+    size[begin] = least(at[begin], hint, nullptr, kNoBound);
     if (end - begin < kLeastChunk || hint.term == kNone) {
-      for (std::size_t i = begin + 1; i < end; ++i) size[i] = least(at[i], hint, nullptr);
+      for (std::size_t i = begin + 1; i < end; ++i) size[i] = least(at[i], hint, nullptr, kNoBound);
       continue;
     }
     Box box;
@@ -379,7 +379,30 @@ void SourceTree::least(std::span<const Point> at, std::span<double> size) const 
     const SourceTerm& term = terms_[hint.term];
     const double far = (term.shape.distance(at[begin]) + box.diagonal()) * (1 + 1e-12);
     find_frontier(start(box.low, box.high, term.factor * term.law(far) * (1 + 1e-12), hint.bin), frontier);
-    for (std::size_t i = begin + 1; i < end; ++i) size[i] = least(at[i], hint, &frontier);
+    for (std::size_t i = begin + 1; i < end; ++i) size[i] = least(at[i], hint, &frontier, kNoBound);
+  }
+}
+
+/// By runs: what can be less than the largest of the given sizes anywhere in the box of a run; often nothing.
+void SourceTree::lower(std::span<const Point> at, std::span<double> size) const {
+  Hint hint;
+  Frontier frontier{};
+  for (std::size_t begin = 0; begin < at.size(); begin += kChunk) {
+    const std::size_t end = std::min(at.size(), begin + kChunk);
+    Box box;
+    double limit = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      box.add(at[i]);
+      limit = std::max(limit, size[i]);
+    }
+    if (hint.term != kNone) {  // the winner of the last run allows no more than this anywhere in the box
+      const SourceTerm& term = terms_[hint.term];
+      const double far = (term.shape.distance(at[begin]) + box.diagonal()) * (1 + 1e-12);
+      limit = std::min(limit, term.factor * term.law(far) * (1 + 1e-12));
+    }
+    const bool is_run = end - begin >= kLeastChunk;
+    if (is_run) find_frontier(start(box.low, box.high, limit, hint.bin), frontier);
+    for (std::size_t i = begin; i < end; ++i) size[i] = least(at[i], hint, is_run ? &frontier : nullptr, size[i]);
   }
 }
 

@@ -40,9 +40,11 @@ class SourceTree {
     int bin = 0;
   };
   /// @brief The least term at p.
-  double least(Point p, Hint& hint) const { return least(p, hint, nullptr); }
+  double least(Point p, Hint& hint) const { return least(p, hint, nullptr, kNoBound); }
   /// @brief The least terms at many places, quickest where neighbours in the list are near in space.
   void least(std::span<const Point> at, std::span<double> size) const;
+  /// @brief Lower the given sizes to the least where that is less.
+  void lower(std::span<const Point> at, std::span<double> size) const;
   double least_by_scan(Point p) const;
   /// @brief A lower bound over a box, not above the least term at its centre.
   double lower_bound(const Box& box) const;
@@ -116,7 +118,9 @@ class SourceTree {
   void prefetch(std::uint32_t child) const;
   void find_frontier(const Query& query, Frontier& frontier) const;
   void fill_reaches(int bin, Frontier& frontier) const;
-  double least(Point p, Hint& hint, Frontier* frontier) const;
+  static constexpr double kNoBound = std::numeric_limits<double>::infinity();
+  /// The least size, or `bound` where none is less.
+  double least(Point p, Hint& hint, Frontier* frontier, double bound) const;
   std::vector<double> sample_sizes() const;
 
   std::vector<SourceTerm> terms_;      // in the order of the leaves

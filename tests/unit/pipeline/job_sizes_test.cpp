@@ -163,6 +163,26 @@ TEST(JobSizes, grow_no_faster_than_asked) {
   }
 }
 
+TEST(JobSizes, lowering_gives_the_lesser_bit_for_bit) {
+  Box domain;
+  const auto field = field_of_all(domain);
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> in(-1, 1), given(0, 0.3);
+  for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{3000}}) {
+    std::vector<Point> at;
+    std::vector<double> size(count), lowered;
+    const double spread = count > 100 ? 0.2 : 1;
+    for (std::size_t i = 0; i < count; ++i) {
+      at.push_back(spread * Point{in(random), in(random), in(random)});
+      lowered.push_back(i % 11 == 0 ? kInfinity : given(random));
+    }
+    const std::vector<double> before = lowered;
+    field->sizes(at, size);
+    field->lower_sizes(at, lowered);
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(lowered[i], std::min(before[i], size[i])) << i;
+  }
+}
+
 TEST(JobSizes, the_least_of_all_counts) {
   Context context;
   const Model model = sphere(same);
