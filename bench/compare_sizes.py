@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Size sources: scan and tree of delfront, and Gmsh's Min of Distance and Threshold fields, in one run.
+"""Size sources: scan, tree and lists of delfront, and Gmsh's Min of Distance and Threshold fields, in one run.
 
     bench/compare_sizes.py [--bench size_field_bench] [--repeat 3] [--sources 10,100,1000,10000] [--write-docs]
 
@@ -33,6 +33,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--sources", default="10,100,1000,10000,100000")
     parser.add_argument("--gmsh-limit", type=int, default=10_000, help="most sources that Gmsh is given")
+    parser.add_argument("--no-gmsh", action="store_true", help="keep Gmsh's table as it is in docs/sizes/sources.md")
     parser.add_argument("--time-limit", type=float, default=300, help="seconds after which one run is stopped")
     parser.add_argument("--write-docs", action="store_true", help="write the tables into docs/sizes/sources.md")
     return parser.parse_args()
@@ -105,20 +106,42 @@ def compare_with_gmsh(bench: str, options, folder: Path) -> str:
     return "\n".join(lines)
 
 
-def scan_and_tree(bench: str, options) -> str:
+def measure(bench: str, options, methods: str, layouts: str) -> dict[tuple[str, str], dict[str, tuple[float, ...]]]:
+    """@return by layout and number of sources, then by method: seconds to build, million a second, megabytes"""
     command = [bench, "--sources", options.sources, "--repeat", str(options.repeat)]
-    found: dict[tuple[str, str], dict[str, list[str]]] = {}
+    command += ["--methods", methods, "--layout", layouts]
+    found: dict[tuple[str, str], dict[str, tuple[float, ...]]] = {}
     for line in subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[1:]:
-        layout, n, method, build, rate, _ = line.split()
-        found.setdefault((layout, n), {})[method] = [build, rate]
-    lines = ["| layout | sources | scan, µs | tree, µs | tree, million a second | tree against 10 sources | build, s |"]
-    lines += ["| --- | ---: | ---: | ---: | ---: | ---: | ---: |"]
+        layout, n, method, *numbers = line.split()
+        found.setdefault((layout, n), {})[method] = tuple(float(x) for x in numbers[:3])
+    return found
+
+
+def compare_searches(bench: str, options) -> str:
+    """Places after which lists have paid for their building: `from places`, nothing where they never do."""
+    found = measure(bench, options, "scan,tree,lists", "scattered,curves,surfaces")
+    head = "layout|sources|scan, µs|tree, µs|lists, µs|tree, million a second|tree against 10|build tree, s|lists, s"
+    lines = [f"| {' | '.join([*head.split('|'), 'tree, MB', 'lists, MB', 'lists pay from places'])} |"]
+    lines += ["| --- |" + " ---: |" * 11]
     for (layout, n), row in found.items():
-        scan, tree, first = float(row["scan"][1]), float(row["tree"][1]), found.get((layout, "10"))
-        growth = f"{float(first['tree'][1]) / tree:.1f}" if first else ""
-        lines.append(
-            f"| {layout} | {n} | {1 / scan:.3g} | {1 / tree:.3g} | {tree:.2f} | {growth} | {row['tree'][0]} |"
-        )
+        tree, lists, first = row["tree"], row["lists"], found.get((layout, "10"))
+        growth = f"{first['tree'][1] / tree[1]:.1f}" if first else ""
+        gain, price = 1 / tree[1] - 1 / lists[1], max(0.0, lists[0] - tree[0])
+        pays = f"{price / gain * 1e6:.1g}" if gain > 0 else "never"
+        times = [f"{1 / row[method][1]:.3g}" for method in ("scan", "tree", "lists")]
+        rest = [f"{tree[1]:.2f}", growth, f"{tree[0]:.2f}", f"{lists[0]:.2f}", f"{tree[2]:.1f}", f"{lists[2]:.1f}", pays]
+        lines.append(f"| {' | '.join([layout, n, *times, *rest])} |")
+    return "\n".join(lines)
+
+
+def compare_body(bench: str, options) -> str:
+    found = measure(bench, options, "tree,lists,boundary", "body")
+    lines = ["| triangles | tree, µs | lists, µs | sizes from as many boundary points, µs | build: tree, lists, points, s |"]
+    lines += ["| ---: | ---: | ---: | ---: | ---: |"]
+    for (_, n), row in found.items():
+        three = [row[method] for method in ("tree", "lists", "boundary")]
+        build = ", ".join(f"{seconds[0]:.3f}" for seconds in three)
+        lines.append(f"| {n} | {' | '.join(f'{1 / r[1]:.3g}' for r in three)} | {build} |")
     return "\n".join(lines)
 
 
@@ -128,12 +151,18 @@ def main() -> int:
     if not bench:
         print(why, file=sys.stderr)
         return 1
-    with tempfile.TemporaryDirectory(prefix="delfront_sizes_") as folder:
-        gmsh = compare_with_gmsh(bench, options, Path(folder))
+    if options.no_gmsh:
+        text = PAGE.read_text(encoding="utf-8")
+        gmsh = text[text.index("| point sources |") : text.index(END)].rstrip()
+    else:
+        with tempfile.TemporaryDirectory(prefix="delfront_sizes_") as folder:
+            gmsh = compare_with_gmsh(bench, options, Path(folder))
     text = (
         f"{machine.describe()}; medians of {options.repeat}, one core, by `bench/compare_sizes.py --write-docs`.\n\n"
         f"Sources of all three laws (points, lines, triangles), a million places in Hilbert order:\n\n"
-        f"{scan_and_tree(bench, options)}\n\n"
+        f"{compare_searches(bench, options)}\n\n"
+        f"The triangles of a sphere, all of one size that grows with the distance, as sizes on a patch are:\n\n"
+        f"{compare_body(bench, options)}\n\n"
         f"Point sources with linear laws, beside Gmsh's `Min` of `Distance` and `Threshold`, time of one value:\n\n{gmsh}\n"
     )
     print(text)

@@ -200,7 +200,7 @@ void run_case(const std::string& layout, std::size_t n, const std::string& metho
   const double build = seconds_of([&] { field = build_field(layout, n, method); });
   const double megabytes = megabytes_in_use() - before;
   // Scanning: fewer points, so that a case stays within seconds.
-  const std::size_t scanned = std::max<std::size_t>(1000, 100'000'000 / n);
+  const std::size_t scanned = std::max<std::size_t>(200, 20'000'000 / n);
   const std::vector<Point> all = make_points(num_points);
   const std::size_t step = is_scan ? std::max<std::size_t>(1, num_points / scanned) : 1;
   std::vector<Point> at;
