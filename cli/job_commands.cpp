@@ -82,7 +82,8 @@ class JobCommand : public Command {
   }
 
   int run(const std::string& command_line) override {
-    const Options options = effective_options();
+    Options options = effective_options();
+    if (kind_ == JobKind::sizes && !is_typed("output.files")) name_size_file(options);
     if (print_config_) {
       fmt::print("{}", print_config(options));
       return 0;
@@ -95,11 +96,27 @@ class JobCommand : public Command {
     if (!result.error.empty()) show_failure(result, terminal);
     if (result.exit_code == ExitCode::done || result.exit_code == ExitCode::gate_not_met)
       if (terminal.verbosity() >= 0)
-        result.estimate ? print_estimate(*result.estimate) : print_summary(result, options);
+        result.estimate ? print_estimate(*result.estimate, options) : print_summary(result, options);
     return static_cast<int>(result.exit_code);
   }
 
  private:
+  bool is_typed(const std::string& key) const {
+    const auto it = typed_.find(key);
+    return it != typed_.end() && !it->second.empty();
+  }
+
+  /// The job's outputs are for its grid: sizes go beside them.
+  static void name_size_file(Options& options) {
+    namespace fs = std::filesystem;
+    if (options.output.files.empty() && options.input.files.empty()) return;
+    fs::path base =
+        options.output.files.empty() ? fs::path(options.input.files[0]).filename() : fs::path(options.output.files[0]);
+    if (!base.has_filename()) base = base.parent_path();
+    options.output.files = {(base.parent_path() / (base.stem().string() + "_sizes.vtu")).string()};
+    options.output.format.clear();
+  }
+
   void add_row_flag(const OptionRow& row) {
     app->add_option(row.flags, typed_[row.key], row.help)
         ->type_name(row.metavar)
@@ -217,8 +234,11 @@ class JobCommand : public Command {
     return warnings;
   }
 
-  static void print_estimate(const Estimate& e) {
+  static void print_estimate(const Estimate& e, const Options& options) {
     fmt::print("cells          {}{}\n", e.is_at_least ? "at least " : "about ", with_commas(rounded(e.cells)));
+    if (options.limits.max_cells > 0 && e.cells > static_cast<double>(options.limits.max_cells))
+      fmt::print("limit          limits.max_cells is {}: mesh would stop there\n",
+                 with_commas(options.limits.max_cells));
     fmt::print("points         about {}\n", with_commas(rounded(e.points)));
     fmt::print("sizes          {:.4g} to {:.4g}\n", e.least_size, e.greatest_size);
     fmt::print("memory         about {}\n",

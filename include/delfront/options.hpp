@@ -82,8 +82,9 @@ struct SourceOptions {
   std::vector<Point> at;  ///< point: any number, line: 2, polyline: 2 or more, triangle: 3
   std::string file;       ///< surface: a file of facets
   std::optional<Length> delta0;
-  Length r0, r1{1, "c"};
-  std::string law = "power";  ///< power exponential polynomial
+  Length r0;
+  std::optional<Length> r1;  ///< absent (and no law): the size rises as fast as growth lets it
+  std::string law;           ///< power exponential polynomial; empty: power where r1 is given
   double gamma = 1;
   std::vector<double> coefficients;  ///< of the polynomial
   std::optional<StretchOptions> stretch;

@@ -8,6 +8,7 @@
 
 #include "improve/improve.hpp"
 #include "pipeline/prepare.hpp"
+#include "pipeline/size_survey.hpp"
 #include "sizing/asked_sizes.hpp"
 #include "volume/refine.hpp"
 #include "volume/to_mesh.hpp"
@@ -29,7 +30,9 @@ Outcome generate(Model model, const Options& options, Context& context, std::sha
   check_floating_point_mode();
   Outcome outcome;
   Report& report = outcome.report;
-  auto [grid, size] = prepare_volume(model, options, std::move(asked), report, context);
+  Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
+  refuse_too_many_cells(prepared, context);
+  auto [grid, size] = std::move(prepared);
   report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();
   if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);

@@ -136,11 +136,36 @@ const std::string* find_same_file(const std::string& path, const std::vector<std
   return found == others.end() ? nullptr : &*found;
 }
 
+static void check_sizes(const Options& options) {
+  constexpr std::size_t kMostCells = 200;  // cubed, of six tetrahedra each
+  if (options.size.adaptive.cells > kMostCells)
+    throw usage_error(
+        options, "size.adaptive.cells",
+        fmt::format("{} cells a side are too many to begin with; give {} or less (8 is usual), the grid is "
+                    "refined where sizes ask for it",
+                    options.size.adaptive.cells, kMostCells));
+  const BackgroundFileOptions& background = options.size.background;
+  if (background.file.empty() && (background.combine != "min" || !background.metric.empty() || background.factor != 1))
+    throw usage_error(options, background.combine != "min" ? "size.background.combine" : "size.background.factor",
+                      "there is no background grid; name one: size.background.file");
+  const SolutionFileOptions& solution = options.size.solution;
+  if (solution.file.empty()) return;
+  if (solution.stretched)
+    throw usage_error(options, "size.solution.stretched",
+                      "the methods of this version make no stretched cells, and cells as small as their least size "
+                      "would be many times those asked for; leave it out");
+  if (solution.indicator == "hessian" && solution.complexity == 0)
+    throw usage_error(options, "size.solution.complexity",
+                      "it is missing: how fine the grid is to be, about a tenth of the wanted number of tetrahedra "
+                      "(in the plane 0.4 of that of triangles)");
+}
+
 void check_job(const Options& options) {
   if (options.input.files.empty()) throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
   if (writes_grid(options) && options.output.files.empty())
     throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
   check_domain(options);
+  check_sizes(options);
   if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
     throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
   check_key(options, "output.require", [&] { try_gates(options.output.require); });

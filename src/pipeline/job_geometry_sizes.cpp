@@ -96,7 +96,6 @@ void add_geometry_sources(const Options& options, const Model& model, const std:
   const bool asks_gap = size.gap.cells > 0 || size.automatic;
   const bool asks_lines = size.proximity.cells > 0 || size.automatic;
   if (!asks_curvature && !asks_gap && !asks_lines) return;
-  const StageTimer timer(context, "sizes");
   Model turned = model;  // sides are told by normals
   turned.feature_angle = options.input.feature_angle;
   if (!turned.triangles.empty()) orient_shells(turned, context);

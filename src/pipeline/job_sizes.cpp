@@ -169,7 +169,6 @@ FieldPointer build_solution_part(const Options& options, const Box& domain, Cont
 /// be.
 FieldPointer keep_on_grid(const Options& options, const SizeField& field, const Box& domain, double growth,
                           Context& context) {
-  const StageTimer timer(context, "sizes");
   SizeOctreeOptions how;
   how.sizes_per_leaf = 1;
   const SizeOctree octree(field, domain, how, context);
@@ -197,6 +196,7 @@ FieldPointer keep_on_grid(const Options& options, const SizeField& field, const 
 FieldPointer build_job_size_field(const Options& options, const Model& model, const Box& domain, Context& context,
                                   const std::function<bool(Point)>& is_kept) {
   const double growth = options.size.growth.value_or(kDefaultGrowth);
+  const StageTimer timer(context, "sizes");
   std::vector<FieldPointer> parts;
   parts.push_back(build_background_part(options, model, domain, growth, context));
   if (options.size.background.combine != "alone" || !parts[0]) {

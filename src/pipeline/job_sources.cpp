@@ -21,10 +21,13 @@ SizeLaw law_of(const SourceOptions& source) {
   law.kind = source.law == "exponential"  ? SizeLaw::Kind::exponential
              : source.law == "polynomial" ? SizeLaw::Kind::polynomial
                                           : SizeLaw::Kind::power;
+  const bool has_law = source.r1 || !source.law.empty();
+  if (!has_law) law.kind = SizeLaw::Kind::step;
+  if (has_law && !source.r1) throw UsageError("r1 is missing, the scaling length of the law");
   if (!source.delta0) throw UsageError("delta0 is missing, the size on the source");
   law.delta0 = source.delta0->value;
   law.r0 = source.r0.value;
-  law.r1 = source.r1.value;
+  law.r1 = source.r1.value_or(Length{1, ""}).value;
   law.gamma = source.gamma;
   law.polynomial = source.coefficients;
   if (source.law == "polynomial" && source.coefficients.empty())
@@ -48,6 +51,8 @@ void need_points(const SourceOptions& source, std::size_t least, std::size_t mos
 }
 
 std::vector<SourceShape> shapes_of(const SourceOptions& source, Context& context) {
+  if (source.type != "surface" && !source.file.empty()) throw UsageError("file is of sources of type surface");
+  if (source.type == "surface" && !source.at.empty()) throw UsageError("at: a surface has its places in its file");
   constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
   const std::vector<Point>& at = source.at;
   std::vector<SourceShape> shapes;
@@ -94,7 +99,25 @@ const T& need(const std::optional<T>& value, const char* name, const SizeBoxOpti
   return *value;
 }
 
+/// What other shapes have is a slip, most likely a forgotten `shape`.
+void refuse_other_keys(const SizeBoxOptions& box) {
+  const std::string& shape = box.shape;
+  const bool is_round = shape == "cylinder" || shape == "cone";
+  const auto refuse = [&](bool is_set, bool is_right, const char* key, const char* of) {
+    if (is_set && !is_right) throw UsageError(fmt::format("{} is of {}, and shape is \"{}\"", key, of, shape));
+  };
+  refuse(box.min.has_value(), shape == "box", "min", "boxes");
+  refuse(box.max.has_value(), shape == "box", "max", "boxes");
+  refuse(box.centre.has_value(), shape == "sphere", "centre", "spheres");
+  refuse(box.radius.has_value(), shape == "sphere" || is_round, "radius", "spheres, cylinders and cones");
+  refuse(box.from.has_value(), is_round, "from", "cylinders and cones");
+  refuse(box.to.has_value(), is_round, "to", "cylinders and cones");
+  refuse(box.radius_to.value > 0, shape == "cone", "radius_to", "cones");
+  refuse(!box.file.empty(), shape == "surface", "file", "surfaces");
+}
+
 SourceShape shape_of(const SizeBoxOptions& box, Context& context) {
+  refuse_other_keys(box);
   if (box.shape == "sphere") return Ball{need(box.centre, "centre", box), need(box.radius, "radius", box).value};
   if (box.shape == "cylinder" || box.shape == "cone") {
     const double radius = need(box.radius, "radius", box).value;
@@ -141,9 +164,10 @@ void check_groups(const Options& options) {
     if (!source.group.empty()) groups.push_back(source.group);
   for (const std::string& pattern : options.size.without)
     if (std::none_of(groups.begin(), groups.end(), [&](const auto& group) { return matches_pattern(group, pattern); }))
-      throw usage_error(options, "size.without",
-                        fmt::format("no group of sources is called '{}'{}; there are: {}", pattern,
-                                    did_you_mean(pattern, groups), fmt::join(groups, ", ")));
+      throw usage_error(
+          options, "size.without",
+          fmt::format("no group of sources is called '{}'{}; there are: {}", pattern, did_you_mean(pattern, groups),
+                      groups.empty() ? "none" : fmt::format("{}", fmt::join(groups, ", "))));
 }
 
 }  // namespace

@@ -270,7 +270,12 @@ std::string print_config(const Options& options) {
     result += value.is(JobValue::Kind::none) ? fmt::format("# {} =  # {}\n", name, row.help)
                                              : fmt::format("{} = {}  # {}\n", name, to_toml(value), row.help);
   }
-  for (const EntryTable& of_entries : entry_tables())
+  for (const EntryTable& of_entries : entry_tables()) {
+    if (of_entries.count(options) == 0) {  // what may be
+      result += of_entries.is_list ? fmt::format("\n# [[{}]]\n", of_entries.key)
+                                   : fmt::format("\n# [{}.NAME]\n", of_entries.key);
+      for (const EntryRow& row : of_entries.rows) result += fmt::format("# {} =  # {}\n", row.name, row.help);
+    }
     for (std::size_t i = 0; i < of_entries.count(options); ++i) {
       result += of_entries.is_list ? fmt::format("\n[[{}]]\n", of_entries.key)
                                    : fmt::format("\n[{}]\n", key_of_entry(of_entries, options, i));
@@ -278,6 +283,7 @@ std::string print_config(const Options& options) {
       for (std::size_t k = 0; k < entry.items.size(); ++k)
         result += fmt::format("{} = {}\n", entry.names[k], to_toml(entry.items[k]));
     }
+  }
   return result;
 }
 

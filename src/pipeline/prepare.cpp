@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "delfront/errors.hpp"
 #include "sizing/asked_sizes.hpp"
 
@@ -58,23 +61,37 @@ std::shared_ptr<const SizeField> build_size_field(const TetComplex& complex, con
 }
 
 /// Surfaces are kept as they are given, whatever sizes are asked for: flat cells stand where the two do not fit.
-void warn_of_coarse_surface(const Model& model, const SizeOptions& options, Context& context) {
-  if (!options.hmax) return;
-  double longest = 0;
-  Point at;
+/// @param asked  null: hmax alone
+void warn_of_coarse_surface(const Model& model, const SizeOptions& options, const SizeField* asked, Context& context) {
+  if (!options.hmax && !asked) return;
+  std::vector<Point> middles;
+  std::vector<double> lengths;
   for (const std::array<VertexId, 3>& triangle : model.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const Point a = model.points[triangle[static_cast<std::size_t>(k)]],
-                  b = model.points[triangle[static_cast<std::size_t>((k + 1) % 3)]];
-      if (length(b - a) <= longest) continue;
-      longest = length(b - a);
-      at = 0.5 * (a + b);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId v = triangle[k], w = triangle[(k + 1) % 3];
+      if (w.index() < v.index()) continue;  // its other triangle has it too
+      middles.push_back(0.5 * (model.points[v] + model.points[w]));
+      lengths.push_back(distance(model.points[v], model.points[w]));
     }
-  if (longest > kMuchLonger * options.hmax->value)
-    context.warn(
-        fmt::format("edges of the surface are up to {:g} long (at {:g} {:g} {:g}), size.hmax is {:g}: the surface "
-                    "is kept as given, cells along it may be flat; give it finer triangles",
-                    longest, at.x, at.y, at.z, options.hmax->value));
+  const double hmin = options.hmin ? options.hmin->value : 0;
+  std::vector<double> sizes(middles.size(), options.hmax ? options.hmax->value : HUGE_VAL);
+  if (asked) asked->lower_sizes(middles, sizes);
+  std::size_t num_long = 0, worst = 0;
+  double worst_ratio = kMuchLonger;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const double ratio = lengths[i] / std::max(sizes[i], hmin);
+    num_long += ratio > kMuchLonger;
+    if (ratio <= worst_ratio) continue;
+    worst_ratio = ratio;
+    worst = i;
+  }
+  if (num_long == 0) return;
+  const Point at = middles[worst];
+  context.warn(fmt::format(
+      "{} edges of the surface are longer than the sizes asked for there, the worst {:g} where {:g} is asked "
+      "for (at {:g} {:g} {:g}): the surface is kept as given, cells along it may be flat; give it finer "
+      "triangles there",
+      num_long, lengths[worst], std::max(sizes[worst], hmin), at.x, at.y, at.z));
 }
 
 /// The field's size at every vertex, so that all sizes keep the growth. Vertices that the grid does not use are not
@@ -100,7 +117,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   refuse_invalid(report.surface);
   Prepared prepared;
   prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
-  warn_of_coarse_surface(model, options.size, context);
+  warn_of_coarse_surface(model, options.size, asked.get(), context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;

@@ -123,7 +123,7 @@ void add_grid_rows(std::vector<OptionRow>& t) {
       "size.solution.norm", "", "", "p of the L^p norm of the error", "a number of 1 or more", 1, kHuge,
       [](auto& o) -> auto& { return o.size.solution.norm; }));
   t.push_back(wish_row(
-      "size.solution.complexity", "", "N", "wanted complexity: an eighth of the number of tetrahedra",
+      "size.solution.complexity", "", "N", "wanted complexity: a tenth of the number of tetrahedra, growth adds some",
       "a number of 1 or more", 1, 1e15, [](auto& o) -> auto& { return o.size.solution.complexity; }));
   t.push_back(number_row(
       "size.solution.error", "", "", "indicator = error: its wanted value", "a number over 0, at most 1", 1e-12, 1,
@@ -197,14 +197,16 @@ void set_law(SourceOptions& source, const JobValue& value) {
     return;
   }
   need_members(value, {"type", "gamma", "coefficients"});
+  source.law = laws[0];
   if (const JobValue* type = value.find("type")) source.law = as_choice(*type, laws);
   source.gamma = member_or(value, "gamma", 1.0);
   if (const JobValue* a = value.find("coefficients")) source.coefficients = as_numbers(*a);
 }
 
 JobValue get_law(const SourceOptions& source) {
+  if (source.law.empty() && source.gamma == 1) return {};
   JobValue value = JobValue::table();
-  value.add("type", JobValue::of(source.law));
+  value.add("type", JobValue::of(source.law.empty() ? "power" : source.law));
   if (source.law == "polynomial")
     value.add("coefficients", numbers_value(source.coefficients));
   else
@@ -270,7 +272,8 @@ EntryTable source_table() {
   add_length<S>(
       table, kSources, "r0", "size is delta0 up to this distance", [](auto& s) -> auto& { return s.r0; }, true);
   add_length<S>(
-      table, kSources, "r1", "scaling length of the law", [](auto& s) -> auto& { return s.r1; });
+      table, kSources, "r1", "scaling length of the law; absent: as growth lets it",
+      [](auto& s) -> auto& { return s.r1; });
   add_entry<S>(table, kSources,
                {"law", Takes::text, "how the size rises with the distance",
                 "power, exponential, or { type = \"polynomial\", coefficients = [...] }"},

@@ -3,6 +3,8 @@
 // about a cell wide, and taken by samples then.
 #include "pipeline/size_survey.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,9 +23,11 @@ constexpr double kCellsPerPoint = 5.6, kTrianglesPerPoint = 2;
 // More than a filling with regular tetrahedra would have: where sizes vary cells are less regular, and cells that end
 // at the border are cut off ones. Fitted to grids of 7e4 to 4e6 cells (bodies, a ship, examples/sizes), all within 8 %.
 constexpr double kIrregular = 1.04, kPerBorderTriangle = 1.2, kPerBorderSegment = 0.8;
+constexpr double kSurelyOver = 3;  ///< estimates with few boxes are rough
+constexpr std::size_t kFewLeaves = 20'000;
 constexpr double kBorderWidth = 1.5;  ///< sizes; boxes on the border are halved until they are narrower
 constexpr std::size_t kGrain = 1 << 6;
-constexpr int kMaxHalvings = 12;
+constexpr double kFinestBorder = 1.0 / 128;  ///< of the longest side: no box on the border is halved below that
 
 // Of this program on one core of about 2.5 GHz; bench/compare_peers.py measures them (docs/performance.md).
 constexpr double kSecondsPerTet = 0.5e-6, kSecondsPerTetAndThread = 0.8e-6, kSecondsPerTriangle = 0.5e-6;
@@ -56,14 +60,15 @@ struct Sum {
 
 class Integral {
  public:
-  Integral(const KeptDomain& domain, const SizeField& size) : domain_(domain), size_(size) {}
+  Integral(const KeptDomain& domain, const SizeField& size, const Context& context)
+      : domain_(domain), size_(size), context_(context), finest_(kFinestBorder * domain.box().longest_side()) {}
 
-  void add(const Box& box, int halvings, Sum& sum) const {
+  void add(const Box& box, Sum& sum) const {
     const bool is_crossed = domain_.is_crossed(box);
     if (!is_crossed && !domain_.is_inside(box.centre())) return;
     const Point side = box.high - box.low;
-    const bool is_wide = is_crossed && halvings < kMaxHalvings && side.x > kBorderWidth * size_.lower_bound(box);
-    if (is_wide) return add_parts(box, halvings, sum);
+    const bool is_wide = is_crossed && side.x > finest_ && side.x > kBorderWidth * size_.lower_bound(box);
+    if (is_wide) return add_parts(box, sum);
     const std::vector<Point> at = gauss_points(box, domain_.is_planar());
     std::vector<double> h(at.size());
     size_.sizes(at, h);
@@ -78,18 +83,21 @@ class Integral {
   }
 
  private:
-  void add_parts(const Box& box, int halvings, Sum& sum) const {
+  void add_parts(const Box& box, Sum& sum) const {
+    context_.check_limits();
     const Point middle = box.centre();
     for (int octant = 0; octant < (domain_.is_planar() ? 4 : 8); ++octant) {
       Box part = box;
       for (int axis = 0; axis < (domain_.is_planar() ? 2 : 3); ++axis)
         (octant >> axis & 1 ? part.low : part.high)[axis] = middle[axis];
-      add(part, halvings + 1, sum);
+      add(part, sum);
     }
   }
 
   const KeptDomain& domain_;
   const SizeField& size_;
+  const Context& context_;
+  const double finest_;
 };
 
 /// Twice the area of a, b, p, seen along x; exactly the negative for b, a, p.
@@ -117,6 +125,12 @@ bool is_before(Point p, const std::array<Point, 3>& t) {
 bool is_before_segment(Point p, Point a, Point b) {
   if ((a.y > p.y) == (b.y > p.y)) return false;
   return a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x;
+}
+
+/// Cells are surely no more than this.
+double most_cells(const Box& box, double least, bool is_planar) {
+  const double measure = measure_of(box, is_planar);
+  return is_planar ? kCellsPerArea * measure / (least * least) : kCellsPerVolume * measure / std::pow(least, 3);
 }
 
 }  // namespace
@@ -171,15 +185,18 @@ bool KeptDomain::is_inside(Point p) const {
   return inside;
 }
 
-Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context) {
+Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context, std::size_t max_leaves) {
   const StageTimer timer(context, "estimate");
-  const SizeOctree octree(size, domain.box(), {}, context);
+  const double before = context.seconds_since_start();  // a grid takes that long too
+  SizeOctreeOptions how;
+  how.max_leaves = max_leaves;
+  const SizeOctree octree(size, domain.box(), how, context);
   const std::vector<OctreeLeaf>& leaves = octree.leaves();
   std::vector<Sum> sums((leaves.size() + kGrain - 1) / kGrain);
-  const Integral integral(domain, size);
+  const Integral integral(domain, size, context);
   parallel_ranges(context.threads, leaves.size(), kGrain, [&](std::size_t first, std::size_t last) {
     context.check_limits();
-    for (std::size_t i = first; i < last; ++i) integral.add(octree.box(leaves[i]), 0, sums[first / kGrain]);
+    for (std::size_t i = first; i < last; ++i) integral.add(octree.box(leaves[i]), sums[first / kGrain]);
   });
   Sum all;
   for (const Sum& sum : sums) {
@@ -201,9 +218,22 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context&
   estimate.memory = kBytesAtStart + cells * (is_planar ? kBytesPerTriangle : kBytesPerTet);
   const double per_cell =
       is_planar ? kSecondsPerTriangle : kSecondsPerTet + kSecondsPerTetAndThread / std::max(1, context.threads);
-  estimate.seconds = context.seconds_since_start() + cells * per_cell;
+  estimate.seconds = before + cells * per_cell;
   estimate.is_at_least = octree.is_cut_short();
   return estimate;
+}
+
+void refuse_too_many_cells(const Prepared& prepared, Context& context) {
+  const std::uint64_t limit = context.max_cells > 0 ? context.max_cells : TetComplex::kMaxSlots;
+  Box box;
+  for (const TetVertex& v : prepared.grid.complex.vertex) box.add(v.point());
+  if (most_cells(box, prepared.size->lower_bound(box), false) < static_cast<double>(limit)) return;
+  const Estimate estimate = estimate_grid(KeptDomain(prepared), *prepared.size, context, kFewLeaves);
+  if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
+  throw LimitError(fmt::format(
+      "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, and {} is {}; ask "
+      "for larger sizes (a larger hmin bounds them all), or see `delfront estimate`",
+      estimate.least_size, estimate.cells, limit, context.max_cells > 0 ? "the limit" : "what this version can hold"));
 }
 
 Mesh size_mesh(const KeptDomain& domain, const SizeField& size, Context& context) {

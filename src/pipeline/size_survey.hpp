@@ -37,7 +37,13 @@ class KeptDomain {
 
 /// @brief Cells, points, memory and time that a grid of these sizes will take.
 /// @par Source  cells of side h in a volume V: 6 sqrt(2) V / h^3 regular tetrahedra; in the plane 4 / sqrt(3) A / h^2
-Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context);
+/// @param max_leaves  boxes that are looked at; with fewer sums are rougher, and sizes may be missed
+Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context,
+                       std::size_t max_leaves = 500'000);
+
+/// @brief Before the work: sizes that ask for many times the cells that may be or can be held.
+/// @throws LimitError
+void refuse_too_many_cells(const Prepared& prepared, Context& context);
 
 /// @brief The field on an octree over the kept regions (a quadtree in the plane): hexahedra with the field "h" at
 /// points, to look at.

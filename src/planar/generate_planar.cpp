@@ -17,6 +17,7 @@ namespace delfront {
 
 namespace {
 
+constexpr double kMuchLonger = 1.5;   ///< segments than the size asked for
 constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates want
 
 void check_domain(const PlanarDomain& domain) {
@@ -111,6 +112,30 @@ void set_vertex_sizes(TriComplex& complex, const SizeField& field, const Context
   evaluate_sizes(field, places, complex.h, context);
 }
 
+/// A boundary that is kept has its points and no others, whatever sizes are asked for.
+void warn_of_long_segments(PlanarGrid& grid, const SizeField& asked) {
+  std::vector<Point> middles;
+  std::vector<double> lengths;
+  for (const PlanarPiece& piece : grid.pieces) {
+    const Point2 a = grid.complex.point[piece.a], b = grid.complex.point[piece.b];
+    middles.push_back({0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0});
+    lengths.push_back(std::hypot(b.x - a.x, b.y - a.y));
+  }
+  std::vector<double> sizes(middles.size());
+  asked.sizes(middles, sizes);
+  std::size_t num_long = 0, worst = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    num_long += lengths[i] > kMuchLonger * sizes[i];
+    if (lengths[i] / sizes[i] > lengths[worst] / sizes[worst]) worst = i;
+  }
+  if (num_long > 0)
+    grid.warnings.push_back(
+        fmt::format("{} segments of the boundary are longer than the sizes asked for there, the "
+                    "worst {:g} where {:g} is asked for (at {:g} {:g}): the boundary is kept as "
+                    "given; --boundary split divides it",
+                    num_long, lengths[worst], sizes[worst], middles[worst].x, middles[worst].y));
+}
+
 }  // namespace
 
 std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& context) {
@@ -141,6 +166,7 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
     split_segments(grid, *prepared.size, context);
     prepared.size = build_size_field(grid, options.size, largest, asked, context);
   }
+  if (options.planar.boundary == "keep" && asked) warn_of_long_segments(grid, *asked);
   set_vertex_sizes(grid.complex, *prepared.size, context);
   return prepared;
 }

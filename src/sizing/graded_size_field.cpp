@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kSamples = 3;  ///< an axis, in a steep leaf
 constexpr std::size_t kGrain = 1 << 6;
+constexpr std::size_t kMostBoxes = 1'000'000;
 constexpr double kTighter = 1 - 1e-6;
 
 /// The least size at the places of a regular pattern in the box, its corners among them.
@@ -41,6 +42,7 @@ double sampled_least(const SizeField& size, const Box& box, int dimension) {
 BoundarySizes steep_places(const SizeField& size, const Box& domain, double slope, Context& context) {
   SizeOctreeOptions options;
   options.slope = slope;
+  options.max_leaves = kMostBoxes;
   const SizeOctree octree(size, domain, options, context);
   if (octree.is_cut_short())
     context.warn(

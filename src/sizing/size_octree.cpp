@@ -19,12 +19,12 @@ constexpr int kLevelToTrust = 3;  ///< corners of larger leaves tell too little 
 }  // namespace
 
 SizeOctree::SizeOctree(const SizeField& size, const Box& domain, const SizeOctreeOptions& options, Context& context)
-    : domain_(domain), side_(domain.longest_side()), options_(options) {
+    : domain_(domain), side_(domain.longest_side()), largest_(size.largest()), options_(options) {
   DELFRONT_CHECK(!domain.is_empty() && side_ > 0);
   dimension_ = domain.high.z - domain.low.z > kFlat * side_ ? 3 : 2;
   std::vector<OctreeLeaf> cells(1);
   for (int level = 0; !cells.empty(); ++level) {
-    context.check_limits();
+    context.progress("sizes", leaves_.size() + cells.size(), 0, "boxes");
     set_bounds(cells, size, context);
     add_corners(cells, size, context);
     std::vector<OctreeLeaf> finer;
@@ -130,7 +130,7 @@ bool SizeOctree::is_flat(const OctreeLeaf& leaf, const SizeField& size) const {
     greatest = std::max(greatest, corner_sizes_[leaf.corner[static_cast<std::size_t>(c)]]);
   const double limit = options_.flat * leaf.low;
   if (greatest > limit) return false;
-  return size.largest() <= limit || (leaf.level >= kLevelToTrust && size.size(box(leaf).centre()) <= limit);
+  return largest_ <= limit || (leaf.level >= kLevelToTrust && size.size(box(leaf).centre()) <= limit);
 }
 
 bool SizeOctree::is_fine(const OctreeLeaf& leaf, const SizeField& size) const {

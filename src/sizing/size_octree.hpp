@@ -62,6 +62,7 @@ class SizeOctree {
 
   Box domain_;
   double side_ = 0;
+  double largest_;  ///< of the field
   int dimension_ = 3;
   SizeOctreeOptions options_;
   std::vector<OctreeLeaf> leaves_;
