@@ -155,9 +155,9 @@ static void check_sizes(const Options& options) {
                       "the methods of this version make no stretched cells, and cells as small as their least size "
                       "would be many times those asked for; leave it out");
   if (solution.indicator == "hessian" && solution.complexity == 0)
-    throw usage_error(options, "size.solution.complexity",
-                      "it is missing: how fine the grid is to be, about a tenth of the wanted number of tetrahedra "
-                      "(in the plane 0.4 of that of triangles)");
+    throw UsageError(place_of_key(options, "size.solution.file") +
+                     "size.solution.complexity is missing: how fine the grid is to be, about a tenth of the wanted "
+                     "number of tetrahedra (in the plane 0.4 of that of triangles)");
 }
 
 void check_job(const Options& options) {

@@ -231,9 +231,10 @@ void refuse_too_many_cells(const Prepared& prepared, Context& context) {
   const Estimate estimate = estimate_grid(KeptDomain(prepared), *prepared.size, context, kFewLeaves);
   if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
   throw LimitError(fmt::format(
-      "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, and {} is {}; ask "
-      "for larger sizes (a larger hmin bounds them all), or see `delfront estimate`",
-      estimate.least_size, estimate.cells, limit, context.max_cells > 0 ? "the limit" : "what this version can hold"));
+      "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, over the limit of {}{}; ask for "
+      "larger sizes (a larger hmin bounds them all), or see `delfront estimate`",
+      estimate.least_size, estimate.cells, limit,
+      context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
 
 Mesh size_mesh(const KeptDomain& domain, const SizeField& size, Context& context) {

@@ -57,10 +57,13 @@ class SizeSlips(case.Case):
     def test_laws_make_sense(self):
         self.refuse(2, point_source("delta0 = 0.1", "r1 = 0"), 7, "size.source[0].r1", "not positive")
         self.refuse(2, point_source("delta0 = 0.1", "r0 = -1"), 7, "size.source[0].r0", "which is negative")
-        self.refuse(2, point_source("delta0 = 0.1", "law = { gamma = 0 }"), 3, "gamma = 0", "a number > 0")
-        self.refuse(2, point_source("delta0 = 0.1", 'law = { type = "polynomial", coefficients = [1, -1] }'), 3,
+        self.refuse(2, point_source("delta0 = 0.1", "r1 = 1", "law = { gamma = 0 }"), 3, "gamma = 0", "a number > 0")
+        self.refuse(2, point_source("delta0 = 0.1", "r1 = 1", 'law = { type = "polynomial", coefficients = [1, -1] }'), 3,
                     "size.source[0]", "coefficients = [1, -1]", "decreases near rho", "a law must not decrease")
-        self.refuse(2, point_source("delta0 = 0.1", 'law = "polynomial"'), 3, "a polynomial needs coefficients")
+        self.refuse(2, point_source("delta0 = 0.1", "r1 = 1", 'law = "polynomial"'), 3, "a polynomial needs coefficients")
+
+        self.refuse(2, point_source("delta0 = 0.1", "law = { gamma = 2 }"), 3, "r1 is missing")
+        self.refuse(2, point_source("delta0 = 0.1", 'file = "a.stl"'), 3, "file is of sources of type surface")
 
     def test_sources_are_whole(self):
         self.refuse(2, point_source(), 3, "size.source[0]", "delta0 is missing")
@@ -72,6 +75,7 @@ class SizeSlips(case.Case):
         self.refuse(2, point_source("delta0 = 0.1", "stretch = { s1 = 0 }"), 3, "size.source[0]", "positive")
 
     def test_boxes_are_whole(self):
+        self.refuse(2, "[[size.box]]\nmin = [0, 0]\nmax = [1, 2]\nradius_to = 1\nh = 1", 3, "radius_to is of cones")
         self.refuse(2, "[[size.box]]\nmin = [1, 1]\nmax = [0, 2]\nh = 1", 3, "min is above max along x")
         self.refuse(2, "[[size.box]]\nmin = [0, 0]\nmax = [1, 1]", 3, "h is missing")
         self.refuse(2, '[[size.box]]\nshape = "sphere"\ncentre = [0, 0]\nh = 1', 3, "radius is missing")
