@@ -226,7 +226,9 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context&
 void refuse_too_many_cells(const Prepared& prepared, Context& context) {
   const std::uint64_t limit = context.max_cells > 0 ? context.max_cells : TetComplex::kMaxSlots;
   Box box;
-  for (const TetVertex& v : prepared.grid.complex.vertex) box.add(v.point());
+  const TetComplex& c = prepared.grid.complex;
+  for (VertexIndex v = 0; v < c.num_vertices(); ++v)
+    if (c.vertex_tet[v] != kNoIndex) box.add(c.point(v));
   if (most_cells(box, prepared.size->lower_bound(box), false) < static_cast<double>(limit)) return;
   const Estimate estimate = estimate_grid(KeptDomain(prepared), *prepared.size, context, kFewLeaves);
   if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;

@@ -183,6 +183,22 @@ TEST(JobSizes, lowering_gives_the_lesser_bit_for_bit) {
   }
 }
 
+TEST(JobSizes, sizes_that_ask_for_far_too_many_cells_end_before_the_work) {
+  Context context;
+  Options options;
+  options.size.hmax = length_of(1e-6);
+  try {
+    generate(sphere(same), options, context);
+    FAIL();
+  } catch (const LimitError& e) {
+    EXPECT_NE(std::string(e.what()).find("before gridding"), std::string::npos) << e.what();
+  }
+  EXPECT_LT(peak_resident_memory(), std::uint64_t{2'000'000'000});
+  context.max_cells = 200'000;  // what the sizes ask for is below: no refusal
+  options.size.hmax = length_of(0.1);
+  EXPECT_GT(generate(sphere(same), options, context).report.quality.num_cells, 20'000u);
+}
+
 TEST(JobSizes, the_least_of_all_counts) {
   Context context;
   const Model model = sphere(same);
