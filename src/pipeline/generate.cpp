@@ -31,7 +31,7 @@ Outcome generate(Model model, const Options& options, Context& context, std::sha
   Outcome outcome;
   Report& report = outcome.report;
   Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
-  refuse_too_many_cells(prepared, context);
+  refuse_too_many_cells(prepared, options.size, context);
   auto [grid, size] = std::move(prepared);
   report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();

@@ -199,9 +199,9 @@ void check_size_outputs(const Options& options) {
 /// Estimate and sizes: what the boundary and the size field say, without a grid.
 void survey(Run& run, const KeptDomain& domain, const SizeField& size) {
   if (run.kind == JobKind::estimate) {
-    run.result.estimate = estimate_grid(domain, size, run.context);
+    run.result.estimate = estimate_grid(domain, size, growth_of(run.options.size), run.context);
   } else {
-    run.result.mesh = size_mesh(domain, size, run.context);
+    run.result.mesh = size_mesh(domain, size, growth_of(run.options.size), run.context);
     write_outputs(run);
   }
 }

@@ -11,6 +11,7 @@
 
 #include "base/parallel.hpp"
 #include "delfront/errors.hpp"
+#include "sizing/asked_sizes.hpp"
 #include "sizing/size_octree.hpp"
 
 namespace delfront {
@@ -185,11 +186,13 @@ bool KeptDomain::is_inside(Point p) const {
   return inside;
 }
 
-Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context, std::size_t max_leaves) {
+Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double growth, Context& context,
+                       std::size_t max_leaves) {
   const StageTimer timer(context, "estimate");
   const double before = context.seconds_since_start();  // a grid takes that long too
   SizeOctreeOptions how;
   how.max_leaves = max_leaves;
+  how.rises_at_most = (growth - 1) / growth;
   const SizeOctree octree(size, domain.box(), how, context);
   const std::vector<OctreeLeaf>& leaves = octree.leaves();
   std::vector<Sum> sums((leaves.size() + kGrain - 1) / kGrain);
@@ -223,14 +226,20 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context&
   return estimate;
 }
 
-void refuse_too_many_cells(const Prepared& prepared, Context& context) {
+double growth_of(const SizeOptions& options) {
+  const double growth = options.growth.value_or(kDefaultGrowth);
+  return options.solution.file.empty() ? growth : std::max(growth, options.solution.hgrad);
+}
+
+void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, Context& context) {
   const std::uint64_t limit = context.max_cells > 0 ? context.max_cells : TetComplex::kMaxSlots;
   Box box;
   const TetComplex& c = prepared.grid.complex;
   for (VertexIndex v = 0; v < c.num_vertices(); ++v)
     if (c.vertex_tet[v] != kNoIndex) box.add(c.point(v));
   if (most_cells(box, prepared.size->lower_bound(box), false) < static_cast<double>(limit)) return;
-  const Estimate estimate = estimate_grid(KeptDomain(prepared), *prepared.size, context, kFewLeaves);
+  const Estimate estimate =
+      estimate_grid(KeptDomain(prepared), *prepared.size, growth_of(options), context, kFewLeaves);
   if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
   throw LimitError(fmt::format(
       "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, over the limit of {}{}; ask for "
@@ -239,8 +248,10 @@ void refuse_too_many_cells(const Prepared& prepared, Context& context) {
       context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
 
-Mesh size_mesh(const KeptDomain& domain, const SizeField& size, Context& context) {
-  const SizeOctree octree(size, domain.box(), {}, context);
+Mesh size_mesh(const KeptDomain& domain, const SizeField& size, double growth, Context& context) {
+  SizeOctreeOptions how;
+  how.rises_at_most = (growth - 1) / growth;
+  const SizeOctree octree(size, domain.box(), how, context);
   Mesh mesh;
   mesh.dimension = octree.dimension();
   CellBlock& block = mesh.block(mesh.dimension == 3 ? CellType::hexahedron : CellType::quad);

@@ -38,15 +38,19 @@ class KeptDomain {
 /// @brief Cells, points, memory and time that a grid of these sizes will take.
 /// @par Source  cells of side h in a volume V: 6 sqrt(2) V / h^3 regular tetrahedra; in the plane 4 / sqrt(3) A / h^2
 /// @param max_leaves  boxes that are looked at; with fewer sums are rougher, and sizes may be missed
-Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, Context& context,
+/// @param growth      that the field keeps
+Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double growth, Context& context,
                        std::size_t max_leaves = 500'000);
 
 /// @brief Before the work: sizes that ask for many times the cells that may be or can be held.
 /// @throws LimitError
-void refuse_too_many_cells(const Prepared& prepared, Context& context);
+void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, Context& context);
+
+/// @return the growth that the size field of a job keeps
+double growth_of(const SizeOptions& options);
 
 /// @brief The field on an octree over the kept regions (a quadtree in the plane): hexahedra with the field "h" at
 /// points, to look at.
-Mesh size_mesh(const KeptDomain& domain, const SizeField& size, Context& context);
+Mesh size_mesh(const KeptDomain& domain, const SizeField& size, double growth, Context& context);
 
 }  // namespace delfront

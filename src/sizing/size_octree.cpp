@@ -27,6 +27,7 @@ SizeOctree::SizeOctree(const SizeField& size, const Box& domain, const SizeOctre
     context.progress("sizes", leaves_.size() + cells.size(), 0, "boxes");
     set_bounds(cells, size, context);
     add_corners(cells, size, context);
+    raise_bounds(cells);
     std::vector<OctreeLeaf> finer;
     const bool is_last = level == kMaxLevel;
     std::vector<std::uint8_t> fine(cells.size());
@@ -106,6 +107,17 @@ void SizeOctree::add_corners(std::vector<OctreeLeaf>& cells, const SizeField& si
   for (OctreeLeaf& leaf : cells)
     for (int c = 0; c < num_corners(); ++c)
       leaf.corner[static_cast<std::size_t>(c)] = place_of(corner_key(leaf, c))->second;
+}
+
+/// No place is farther from the nearest corner than half a diagonal.
+void SizeOctree::raise_bounds(std::vector<OctreeLeaf>& cells) const {
+  if (!std::isfinite(options_.rises_at_most)) return;
+  for (OctreeLeaf& leaf : cells) {
+    double least = std::numeric_limits<double>::infinity();
+    for (int c = 0; c < num_corners(); ++c)
+      least = std::min(least, corner_sizes_[leaf.corner[static_cast<std::size_t>(c)]]);
+    leaf.low = std::max(leaf.low, least - 0.5 * options_.rises_at_most * box(leaf).diagonal());
+  }
 }
 
 bool SizeOctree::is_steep(const OctreeLeaf& leaf) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -25,6 +26,9 @@ struct SizeOctreeOptions {
   /// nowhere.
   double slope = 1e300;
   double sizes_per_steep_leaf = 0.5;
+  /// The field is known to rise by no more than this with distance: bounds by the sizes at corners then help where the
+  /// field's own are poor.
+  double rises_at_most = std::numeric_limits<double>::infinity();
   std::size_t max_leaves = 4'000'000;  ///< no level is begun that could pass this
 };
 
@@ -54,6 +58,7 @@ class SizeOctree {
   static constexpr int kMaxLevel = 20;
 
   void set_bounds(std::vector<OctreeLeaf>& cells, const SizeField& size, Context& context) const;
+  void raise_bounds(std::vector<OctreeLeaf>& cells) const;
   void add_corners(std::vector<OctreeLeaf>& cells, const SizeField& size, Context& context);
   bool is_flat(const OctreeLeaf& leaf, const SizeField& size) const;
   bool is_fine(const OctreeLeaf& leaf, const SizeField& size) const;
