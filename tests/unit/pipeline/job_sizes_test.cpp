@@ -118,18 +118,19 @@ TEST(JobSizes, lower_bounds_hold_in_a_million_boxes) {
   const auto field = field_of_all(domain);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> in(-1, 1), log_side(-9, 0), share(0, 1);
-  constexpr int kBoxes = 1'000'000, kPoints = 2, kRun = 1000;
+  const unsigned num_boxes = fixtures::setting("DELFRONT_RANDOM_BOXES", 1'000'000);
+  constexpr unsigned kPoints = 2, kRun = 1000;
   std::vector<Point> at;
   std::vector<double> low, size(kRun * kPoints);
-  for (int done = 0; done < kBoxes; done += kRun) {
+  for (unsigned done = 0; done < num_boxes; done += kRun) {
     at.clear();
     low.clear();
     const Point near{in(random), in(random), in(random)};  // boxes of a run lie together, as queries do
-    for (int i = 0; i < kRun; ++i) {
+    for (unsigned i = 0; i < kRun; ++i) {
       const Point corner = near + 0.05 * Point{in(random), in(random), in(random)};
       const Point side{std::exp(log_side(random)), std::exp(log_side(random)), std::exp(log_side(random))};
       low.push_back(field->lower_bound({corner, corner + side}));
-      for (int k = 0; k < kPoints; ++k)
+      for (unsigned k = 0; k < kPoints; ++k)
         at.push_back(corner + Point{share(random) * side.x, share(random) * side.y, share(random) * side.z});
     }
     field->sizes(at, size);
