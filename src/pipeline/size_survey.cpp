@@ -243,7 +243,7 @@ void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options,
   if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
   throw LimitError(fmt::format(
       "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, over the limit of {}{}; ask for "
-      "larger sizes (a larger hmin bounds them all), or see `delfront estimate`",
+      "larger sizes (--hmax, --growth, or a larger --hmin that bounds all), or see `delfront estimate`",
       estimate.least_size, estimate.cells, limit,
       context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
