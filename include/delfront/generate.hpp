@@ -40,6 +40,21 @@ struct RefineReport {
   KernelCounts kernel;
 };
 
+/// @brief What an advancing front did (F1-F17).
+struct FrontReport {
+  std::size_t faces_processed = 0;  ///< of the front, some more than once
+  std::size_t tets = 0, points = 0;
+  std::size_t rounds = 0, sweeps = 0;
+  std::size_t faces_left = 0;        ///< by the last sweep
+  std::size_t cavities = 0;          ///< closed ones that they made
+  std::size_t tets_emptied = 0;      ///< round these, to be filled anew ...
+  std::size_t tets_refilled = 0;     ///< ... by tets to one point in each
+  std::size_t cavities_left = 0;     ///< even then, closed by constrained Delaunay ...
+  std::size_t tets_of_cavities = 0;  ///< ... with so many tets
+  double crossing_share = 0;         ///< of the time of steps, in crossing tests (F12)
+  std::string gave_up;               ///< why there is no front; refinement took its place
+};
+
 /// @brief What improvement did (T5).
 struct ImproveReport {
   std::size_t passes = 0;
@@ -53,6 +68,7 @@ struct Report {
   SurfaceReport surface;
   RecoveryReport recovery;
   RefineReport refine;
+  FrontReport front;
   ImproveReport improve;
   QualityReport quality;
   std::vector<std::string> warnings;

@@ -172,7 +172,7 @@ struct PlanarOptions {
 };
 
 struct VolumeOptions {
-  std::string method = "delaunay";  ///< delaunay none
+  std::string method = "front-delaunay";  ///< front front-delaunay delaunay none
   bool core = true;                 ///< a regular lattice where sizes are at their largest, far from the boundary
 };
 
