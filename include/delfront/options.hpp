@@ -113,8 +113,8 @@ struct SizeOnOptions {
 /// @brief Sizes at the nodes of a grid (S6).
 struct BackgroundFileOptions {
   std::string file;
-  std::string size = "h";  ///< a scalar field
-  std::string metric;      ///< a tensor field instead
+  std::string size;    ///< a scalar field; empty, and no metric: the field "h", or the only one there is
+  std::string metric;  ///< a tensor field instead
   std::string combine = "min";
   double factor = 1;
 };
