@@ -118,6 +118,22 @@ Json to_json(const RefineReport& r) {
           {"kernel", to_json(r.kernel)}};
 }
 
+Json to_json(const FrontReport& r) {
+  return {{"faces_processed", r.faces_processed},
+          {"tets", r.tets},
+          {"points", r.points},
+          {"rounds", r.rounds},
+          {"sweeps", r.sweeps},
+          {"faces_left", r.faces_left},
+          {"cavities", r.cavities},
+          {"tets_emptied", r.tets_emptied},
+          {"tets_refilled", r.tets_refilled},
+          {"cavities_left", r.cavities_left},
+          {"tets_of_cavities", r.tets_of_cavities},
+          {"crossing_share", number(r.crossing_share)},
+          {"gave_up", r.gave_up}};
+}
+
 Json to_json(const ImproveReport& r) {
   return {{"passes", r.passes},
           {"face_swaps", r.face_swaps},
@@ -278,6 +294,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"surface", to_json(result.report.surface)},
       {"recovery", to_json(result.report.recovery)},
       {"refine", to_json(result.report.refine)},
+      {"front", to_json(result.report.front)},
       {"improve", to_json(result.report.improve)},
       {"quality", to_json(result.report.quality)},
       {"boundaries", groups_json(result.mesh, 2)},

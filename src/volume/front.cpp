@@ -24,6 +24,7 @@ namespace {
 constexpr FrontSettings kSweeps[] = {
     {.radius = 1.25, .quality = 0.01, .wedge = 0.03, .clearance = 0.1, .to_points = 0.7, .to_faces = 0.45},
     {.radius = 1.6, .quality = 0.01, .wedge = 0.001, .clearance = 0.0, .to_points = 0.4, .to_faces = 0.2},
+    {.radius = 2.5, .quality = 1e-12, .wedge = 0, .clearance = 0, .to_points = 0.2, .to_faces = 0.05, .is_local = true},
 };
 constexpr double kSmallest = 1.5;        ///< a round takes faces up to that times the smallest
 constexpr std::uint16_t kMostTries = 3;  ///< of a face in a sweep

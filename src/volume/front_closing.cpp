@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <unordered_map>
 
 #include "delfront/errors.hpp"
@@ -16,11 +18,9 @@ namespace delfront {
 
 namespace {
 
-constexpr double kGoodEnough = 0.02;  ///< squared sine: 8 degrees
-constexpr double kBarelyEnough = 0.001;
-constexpr int kStrictRounds = 16, kRounds = 24;
+constexpr double kFloors[] = {0.02, 0.002, 1e-5, 0};  ///< least squared sines of dihedral angles
+constexpr int kRounds = 20;
 constexpr std::size_t kMostEmptied = 4;  ///< tets a round, so that the point can follow
-constexpr std::uint16_t kGivenUp = 0xffff;
 constexpr std::size_t kMostFaces = 600;  ///< of a cavity that is filled round one point
 constexpr int kHalvings = 8;
 
@@ -29,30 +29,73 @@ class CavityFiller {
   CavityFiller(FrontStore& front, PointTree<3>& tree, FrontReport& report)
       : front_(front), c_(front.complex()), tree_(tree), report_(report) {}
 
-  /// @return whether the cavity that has face f is filled; else its faces are added to `left`
-  bool fill(std::uint32_t f, std::vector<std::uint32_t>& left) {
-    for (int round = 0; round < kRounds; ++round) {
-      collect(f);
-      if (faces_.size() > kMostFaces) break;
-      if (const VertexIndex apex = find_apex(); apex != kNoIndex) return add_star(apex), true;
-      const Point p = find_point();
-      const double floor = round < kStrictRounds ? kGoodEnough : kBarelyEnough;
-      if (empty_behind_bad_faces(p, floor) > 0) {
-        f = made_[0];
-        continue;
-      }
-      if (!sees_all(p) || !is_clear(p)) break;
-      add_star(add_point(p));
-      return true;
+  bool is_given_up(std::uint32_t f) const { return given_up_.count(key(f)) > 0; }
+
+  /// Those that come on the way are added: other cavities may hang on them.
+  std::vector<std::uint32_t> faces_to_see;
+
+  /// Less and less is asked for; what was emptied in vain is put back.
+  /// @return whether the cavity that has face f is filled
+  bool fill(std::uint32_t f) {
+    const auto first = front_.nodes(f);
+    for (const double floor : kFloors) {
+      emptied_.clear();
+      if (try_fill(front_.find(first), floor)) return true;
+      put_back();
     }
-    for (const std::uint32_t g : faces_) {
-      front_.face(g).tries = kGivenUp;
-      left.push_back(g);
-    }
+    collect(front_.find(first));
+    for (const std::uint32_t g : faces_) given_up_.insert(key(g));
     return false;
   }
 
  private:
+  /// Faces come again under other numbers.
+  std::array<VertexIndex, 3> key(std::uint32_t f) const {
+    auto n = front_.nodes(f);
+    std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
+    return n;
+  }
+
+  bool try_fill(std::uint32_t f, double floor) {
+    for (int round = 0; round < kRounds; ++round) {
+      collect(f);
+      if (faces_.size() > kMostFaces) return false;
+      if (const VertexIndex apex = find_apex(floor); apex != kNoIndex) {
+        add_star(apex);
+        return true;
+      }
+      const Point p = find_point();
+      if (empty_behind_bad_faces(p, floor) > 0) {
+        if (made_.empty()) return false;
+        f = made_[0];
+        continue;
+      }
+      if (!sees_all(p) || !is_clear(p)) return false;
+      add_star(add_point(p));
+      return true;
+    }
+    return false;
+  }
+
+  void put_back() {
+    FrontStock stock = front_.take(emptied_.size());
+    report_.tets_emptied -= emptied_.size();
+    made_.clear();
+    for (; !emptied_.empty(); emptied_.pop_back()) {
+      const auto& [n, region] = emptied_.back();
+      bool is_back = false;
+      for (unsigned i = 0; i < 4 && !is_back; ++i) {
+        const auto& k = kFaceNodes[i];
+        const std::uint32_t f = front_.find({n[k[0]], n[k[1]], n[k[2]]});
+        is_back = f != kNoIndex;
+        if (is_back) front_.add_tet(f, n[i], stock, made_);
+      }
+      if (!is_back) front_.add_island(n, region, made_);
+    }
+    faces_to_see.insert(faces_to_see.end(), made_.begin(), made_.end());
+    front_.give(stock);
+  }
+
   /// The faces that hang together with f by edges.
   void collect(std::uint32_t f) {
     faces_.assign(1, f);
@@ -114,7 +157,10 @@ class CavityFiller {
     for (const std::uint32_t i : order_) {
       const FrontFace& f = front_.face(faces_[i]);
       if (!f.is_alive || f.is_boundary) continue;
-      front_.remove_tet(f.behind >> 2, made_);
+      const TetIndex t = f.behind >> 2;
+      const std::uint32_t* n = &c_.node[4 * t];
+      emptied_.push_back({{n[0], n[1], n[2], n[3]}, c_.region[t]});
+      front_.remove_tet(t, made_);
       if (++emptied == kMostEmptied) break;
     }
     std::erase_if(made_, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
@@ -123,8 +169,9 @@ class CavityFiller {
         const Point at = c_.point(v);
         tree_.insert(v, {at.x, at.y, at.z}, 0);
       }
+    faces_to_see.insert(faces_to_see.end(), made_.begin(), made_.end());
     report_.tets_emptied += emptied;
-    return made_.empty() ? 0 : emptied;
+    return emptied;
   }
 
   bool sees_all(const Point& p) const {
@@ -162,13 +209,13 @@ class CavityFiller {
   }
 
   /// The fourth corner of a cavity that is a tet; kNoIndex where that is none, or a bad one.
-  VertexIndex find_apex() const {
+  VertexIndex find_apex(double floor) const {
     if (faces_.size() != 4) return kNoIndex;
     const auto n = front_.nodes(faces_[0]);
     for (const VertexIndex v : front_.nodes(faces_[1])) {
       if (v == n[0] || v == n[1] || v == n[2]) continue;
       const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]), d = c_.point(v);
-      if (measure_quality(a, b, c, d) >= kGoodEnough && orient3d(a, b, c, d) > 0) return v;
+      if (measure_quality(a, b, c, d) >= floor && orient3d(a, b, c, d) > 0) return v;
     }
     return kNoIndex;
   }
@@ -197,6 +244,12 @@ class CavityFiller {
   FrontReport& report_;
   std::uint64_t stamp_ = std::uint64_t{1} << 63;
   std::vector<std::uint32_t> faces_, made_, order_;
+  struct Emptied {
+    std::array<VertexIndex, 4> nodes;
+    std::uint32_t region;
+  };
+  std::set<std::array<VertexIndex, 3>> given_up_;
+  std::vector<Emptied> emptied_;  ///< tets, in order
   FaceBatch batch_;
   std::vector<double> quality_;
 };
@@ -222,13 +275,15 @@ std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<st
                                          FrontReport& report, Context& context) {
   PointTree<3> tree = plant_tree(front, faces);
   CavityFiller filler(front, tree, report);
-  std::vector<std::uint32_t> left;
-  for (const std::uint32_t f : faces) {
-    if (!front.face(f).is_alive || front.face(f).tries == kGivenUp) continue;
+  filler.faces_to_see = faces;
+  for (std::size_t i = 0; i < filler.faces_to_see.size(); ++i) {  // it grows
+    const std::uint32_t f = filler.faces_to_see[i];
+    if (!front.face(f).is_alive || filler.is_given_up(f)) continue;
     context.check_limits();
     ++report.cavities;
-    if (!filler.fill(f, left)) ++report.cavities_left;
+    if (!filler.fill(f)) ++report.cavities_left;
   }
+  std::vector<std::uint32_t> left = std::move(filler.faces_to_see);
   std::erase_if(left, [&](std::uint32_t f) { return !front.face(f).is_alive; });
   std::sort(left.begin(), left.end());
   left.erase(std::unique(left.begin(), left.end()), left.end());
@@ -250,6 +305,8 @@ CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces)
   cavity.model.patches.push_back({"cavities", ""});
   for (const std::uint32_t f : faces) {
     const auto n = front.nodes(f);
+    const std::uint32_t twin = front.find({n[0], n[2], n[1]});  // a sheet in the region is one triangle
+    if (twin < f && front.face(twin).region == front.face(f).region) continue;
     std::array<VertexId, 3> corner;
     for (unsigned i = 0; i < 3; ++i) {
       const VertexIndex v = n[i == 0 ? 0 : 3 - i];
@@ -269,24 +326,31 @@ CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces)
 
 }  // namespace
 
-void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report,
-                       Context& context) {
+namespace {
+
+void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report, Context& context) {
   CavityModel cavity = model_of(front, faces);
-  DomainOptions all;
-  all.keep = "all";
   RecoveryReport recovery;
-  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, all, {false}, recovery, context);
+  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, {}, {false}, recovery, context);
   if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
   const TetComplex& from = grid.complex;
   TetComplex& c = front.complex();
-  for (VertexIndex v = static_cast<VertexIndex>(cavity.vertex.size()); v < from.num_vertices(); ++v) {
+  for (auto v = static_cast<VertexIndex>(cavity.vertex.size()); v < from.num_vertices(); ++v) {
     const VertexIndex own = c.take_vertices(1)[0];
     c.set_vertex(own, from.point(v), from.vertex[v].h);
     cavity.vertex.push_back(own);
     front.add_vertex();
   }
-  front.add_tets(from, cavity.vertex);
-  report.tets_of_cavities += from.num_live();
+  report.tets_of_cavities += front.add_tets(from, cavity.vertex);
+}
+
+}  // namespace
+
+void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report,
+                       Context& context) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> of_region;
+  for (const std::uint32_t f : faces) of_region[front.face(f).region].push_back(f);
+  for (const auto& [region, some] : of_region) close_region(front, some, report, context);
 }
 
 }  // namespace delfront

@@ -19,6 +19,7 @@ constexpr double kLowest = 0.35;                   ///< height of the ideal poin
 constexpr double kPreferOld = 0.7;                 ///< a new point's score, times its quality: old ones need no more
 constexpr double kReuse = 0.7;  ///< an old point nearer than that to the ideal one, in wanted edges, is it
 constexpr double kNearBonus = 4;
+constexpr double kNeedle = 0.04;   ///< area over the squared mean edge; of the regular triangle 0.43
 constexpr double kLongEdge = 1.1;  ///< wanted edges; beyond, a candidate is worth less
 constexpr double kHeights[] = {1.0, 0.75, 0.5};
 
@@ -48,22 +49,7 @@ FrontWorker::Result FrontWorker::advance(std::uint32_t f) {
   is_timed_ = counts.steps++ % kTimed == 0;
   const double start = is_timed_ ? seconds_now() : 0;
   measure(f);
-  Result result = Result::deferred;
-  if (gather(f)) {
-    candidates_.clear();
-    add_candidates();
-    add_new_points(f);
-    std::stable_sort(candidates_.begin(), candidates_.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-    result = Result::failed;
-    for (const Candidate& candidate : candidates_) {
-      ++counts.candidates;
-      if (candidate.point == kNoIndex ? try_new_point(f, candidate) : try_point(f, candidate)) {
-        result = Result::done;
-        break;
-      }
-    }
-  }
+  const Result result = choose(f);
   counts.deferred += result == Result::deferred;
   counts.failed += result == Result::failed;
   if (is_timed_) {
@@ -73,6 +59,32 @@ FrontWorker::Result FrontWorker::advance(std::uint32_t f) {
   counts.near = near_.counts;
   return result;
 }
+
+/// F7: the best of the points that could be taken whose tet crosses nothing.
+FrontWorker::Result FrontWorker::choose(std::uint32_t f) {
+  is_local_ = set_.is_local || is_needle();
+  if (is_local_) {
+    gather_ring(f);
+  } else if (!gather(f)) {
+    return Result::deferred;
+  }
+  candidates_.clear();
+  add_candidates();
+  add_new_points(f);
+  std::stable_sort(candidates_.begin(), candidates_.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  Result result = Result::failed;
+  for (const Candidate& candidate : candidates_) {
+    ++counts.candidates;
+    const Result tried = candidate.point == kNoIndex ? try_new_point(f, candidate) : try_point(f, candidate);
+    if (tried == Result::done) return tried;
+    if (tried == Result::deferred) result = tried;
+  }
+  return result;
+}
+
+/// Round such a face a ball of the size of its edges would hold far too many others.
+bool FrontWorker::is_needle() const { return area_ < kNeedle * edge_ * edge_; }
 
 /// The ideal point (F7.1): over the centroid, with edges as long as wanted.
 void FrontWorker::measure(std::uint32_t f) {
@@ -87,6 +99,7 @@ void FrontWorker::measure(std::uint32_t f) {
     spread += squared_length(corner_[i] - centroid_) / 3;
   }
   edge_ = perimeter / 3;
+  area_ = 0.5 * length(cross(corner_[1] - corner_[0], corner_[2] - corner_[0]));
   wanted_ = std::clamp(h, kShortest * edge_, kLongest * edge_);
   const double height = std::sqrt(std::max(wanted_ * wanted_ - spread, kLowest * kLowest * wanted_ * wanted_));
   ideal_ = centroid_ + height * normal_;
@@ -116,6 +129,32 @@ bool FrontWorker::gather(std::uint32_t f) {
   return true;
 }
 
+/// The faces at the corners of the face.
+void FrontWorker::gather_ring(std::uint32_t f) {
+  taken_in_.assign(1, f);
+  for (const VertexIndex v : front_.nodes(f))
+    for (std::uint32_t e = front_.first_at(v); e != kNoIndex; e = front_.next_at(e))
+      if (std::find(taken_in_.begin(), taken_in_.end(), e >> 2) == taken_in_.end()) {
+        taken_in_.push_back(e >> 2);
+        near_.add_face(e >> 2);
+      }
+}
+
+/// The faces that may meet the tet of a point. @return false where it reaches out of the slab
+bool FrontWorker::gather_round(const Point& apex) {
+  Point low = apex, high = apex;
+  for (const Point& p : corner_)
+    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+  if (!slab_.holds(low, high)) return false;
+  tree.for_each_near({low.x, low.y, low.z}, {high.x, high.y, high.z}, [&](std::uint32_t g) {
+    ++counts.visited;
+    if (!front_.face(g).is_alive || std::find(taken_in_.begin(), taken_in_.end(), g) != taken_in_.end()) return;
+    taken_in_.push_back(g);
+    near_.add_face(g);
+  });
+  return true;
+}
+
 double FrontWorker::quality(const Point& apex) const {
   return measure_quality(corner_[0], corner_[1], corner_[2], apex);
 }
@@ -127,7 +166,7 @@ void FrontWorker::add_candidates() {
   for (std::size_t p = 3; p < near_.num_points(); ++p) {
     const Point at = near_.at(p);
     const double d2 = squared_length(at - ideal);
-    if (near_.height(p) <= 0 || d2 > radius2) continue;
+    if (near_.height(p) <= 0 || (!is_local_ && d2 > radius2)) continue;
     const Point absolute = c_.point(near_.id(p));
     double score = quality(absolute);
     if (score < set_.quality) continue;
@@ -144,6 +183,7 @@ void FrontWorker::add_candidates() {
 }
 
 void FrontWorker::add_new_points(std::uint32_t) {
+  if (is_local_ && !set_.is_local) return;  // other faces will do that better
   const Point up = ideal_ - centroid_;
   double share = kPreferOld;
   for (const double height : kHeights) {
@@ -163,12 +203,13 @@ Neighbourhood::Verdict FrontWorker::test(std::size_t apex) {
   return verdict;
 }
 
-bool FrontWorker::try_point(std::uint32_t f, const Candidate& candidate) {
+FrontWorker::Result FrontWorker::try_point(std::uint32_t f, const Candidate& candidate) {
   const VertexIndex d = near_.id(candidate.point);
-  if (orient3d(corner_[0], corner_[1], corner_[2], c_.point(d)) <= 0) return false;
-  if (test(candidate.point) != Neighbourhood::Verdict::free) return false;
+  if (orient3d(corner_[0], corner_[1], corner_[2], c_.point(d)) <= 0) return Result::failed;
+  if (is_local_ && !gather_round(c_.point(d))) return Result::deferred;
+  if (test(candidate.point) != Neighbourhood::Verdict::free) return Result::failed;
   add_tet(f, d);
-  return true;
+  return Result::done;
 }
 
 void FrontWorker::add_tet(std::uint32_t f, VertexIndex d) {
@@ -183,18 +224,19 @@ bool FrontWorker::is_roomy(std::size_t place, double size) const {
          near_.distance_to_faces(place) >= set_.to_faces * size;
 }
 
-bool FrontWorker::try_new_point(std::uint32_t f, const Candidate& candidate) {
-  if (orient3d(corner_[0], corner_[1], corner_[2], candidate.place) <= 0) return false;
+FrontWorker::Result FrontWorker::try_new_point(std::uint32_t f, const Candidate& candidate) {
+  if (orient3d(corner_[0], corner_[1], corner_[2], candidate.place) <= 0) return Result::failed;
+  if (is_local_ && !gather_round(candidate.place)) return Result::deferred;
   const std::size_t place = near_.add_place(candidate.place);
-  bool fits = is_roomy(place, wanted_) && test(place) == Neighbourhood::Verdict::free;
+  const bool fits = is_roomy(place, wanted_) && test(place) == Neighbourhood::Verdict::free;
   near_.drop_place();
-  if (!fits) return false;
+  if (!fits) return Result::failed;
   const VertexIndex d = stock.vertices.back();
   stock.vertices.pop_back();
   c_.set_vertex(d, candidate.place, size_.size(candidate.place));
   add_tet(f, d);
   ++counts.points;
-  return true;
+  return Result::done;
 }
 
 }  // namespace delfront

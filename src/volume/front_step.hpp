@@ -12,12 +12,13 @@ namespace delfront {
 
 /// @brief What a sweep of the front asks of its tets (F17); lengths in wanted sizes.
 struct FrontSettings {
-  double radius;     ///< of the search for points round the ideal one
-  double quality;    ///< least squared sine of a dihedral angle
-  double wedge;      ///< least squared sine of an angle left between two faces
-  double clearance;  ///< between a tet and points that are not its own
-  double to_points;  ///< from a new point to others
-  double to_faces;   ///< from a new point to faces
+  double radius;          ///< of the search for points round the ideal one
+  double quality;         ///< least squared sine of a dihedral angle
+  double wedge;           ///< least squared sine of an angle left between two faces
+  double clearance;       ///< between a tet and points that are not its own
+  double to_points;       ///< from a new point to others
+  double to_faces;        ///< from a new point to faces
+  bool is_local = false;  ///< takes points of adjacent faces alone, as long and narrow faces always do
 };
 
 /// @brief A slab of space between two values of a coordinate, that one worker may change.
@@ -69,11 +70,15 @@ class FrontWorker {
   };
 
   void measure(std::uint32_t f);
+  bool is_needle() const;
+  Result choose(std::uint32_t f);
   bool gather(std::uint32_t f);
+  void gather_ring(std::uint32_t f);
+  bool gather_round(const Point& apex);
   void add_candidates();
   void add_new_points(std::uint32_t f);
-  bool try_new_point(std::uint32_t f, const Candidate& candidate);
-  bool try_point(std::uint32_t f, const Candidate& candidate);
+  Result try_new_point(std::uint32_t f, const Candidate& candidate);
+  Result try_point(std::uint32_t f, const Candidate& candidate);
   bool is_roomy(std::size_t place, double size) const;
   Neighbourhood::Verdict test(std::size_t apex);
   void add_tet(std::uint32_t f, VertexIndex d);
@@ -88,7 +93,10 @@ class FrontWorker {
   bool is_timed_ = false;
   Point corner_[3], centroid_, normal_, ideal_;
   double edge_ = 0, wanted_ = 0;  ///< mean edge, wanted edge
+  double area_ = 0;
   std::vector<Candidate> candidates_;
+  std::vector<std::uint32_t> taken_in_;  ///< faces, in local steps
+  bool is_local_ = false;
 };
 
 }  // namespace delfront

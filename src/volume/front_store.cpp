@@ -140,6 +140,18 @@ TetIndex FrontStore::add_tet(std::uint32_t f, VertexIndex d, FrontStock& stock, 
   return t;
 }
 
+void FrontStore::add_island(const std::array<VertexIndex, 4>& n, std::uint32_t region,
+                            std::vector<std::uint32_t>& made) {
+  const TetIndex t = c_.new_tet();
+  c_.set_nodes(t, n[0], n[1], n[2], n[3]);
+  c_.region[t] = region;
+  for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
+    const auto k = c_.face_nodes(ref);
+    c_.neigh[ref] = kNoIndex;
+    made.push_back(add_face({k[0], k[2], k[1]}, ref, region, false, new_slot()));
+  }
+}
+
 void FrontStore::remove_tet(TetIndex t, std::vector<std::uint32_t>& made) {
   for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
     const auto n = c_.face_nodes(ref);
@@ -159,7 +171,7 @@ void FrontStore::remove_tet(TetIndex t, std::vector<std::uint32_t>& made) {
 
 void FrontStore::add_vertex() { first_.resize(c_.num_vertices(), kNoIndex); }
 
-void FrontStore::add_tets(const TetComplex& from, const std::vector<VertexIndex>& number) {
+std::size_t FrontStore::add_tets(const TetComplex& from, const std::vector<VertexIndex>& number) {
   std::vector<TetIndex> slot(from.num_slots(), kNoIndex);
   const auto is_filled = [&](TetIndex t) { return !from.is_dead(t) && !from.is_ghost(t); };
   std::vector<TetIndex> coloured;
@@ -196,6 +208,7 @@ void FrontStore::add_tets(const TetComplex& from, const std::vector<VertexIndex>
       c_.region[slot[other]] = c_.region[slot[coloured[i]]];
       coloured.push_back(other);
     }
+  return static_cast<std::size_t>(std::count_if(slot.begin(), slot.end(), [](TetIndex t) { return t != kNoIndex; }));
 }
 
 void FrontStore::join() {

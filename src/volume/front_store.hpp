@@ -66,6 +66,8 @@ class FrontStore {
   /// @param[out] made  the new faces are appended
   /// @pre the tet is positive and crosses nothing
   TetIndex add_tet(std::uint32_t f, VertexIndex d, FrontStock& stock, std::vector<std::uint32_t>& made);
+  /// @brief A tet that meets nothing of the front, all of whose faces come.
+  void add_island(const std::array<VertexIndex, 4>& nodes, std::uint32_t region, std::vector<std::uint32_t>& made);
   /// @brief Take a tet away again: its faces that have tets or ghosts behind them come, those of the front that it
   /// stood behind go.
   void remove_tet(TetIndex t, std::vector<std::uint32_t>& made);
@@ -73,7 +75,8 @@ class FrontStore {
   /// @brief Make room for what is held by vertex.
   void add_vertex();
   /// @brief Take over the tets of another complex that fills cavities of the front: vertex i there is number[i] here.
-  void add_tets(const TetComplex& from, const std::vector<VertexIndex>& number);
+  /// @return how many
+  std::size_t add_tets(const TetComplex& from, const std::vector<VertexIndex>& number);
 
   /// @brief Make one complex of it. @pre no face is left
   void join();

@@ -12,6 +12,7 @@
 #include "delfront/surface_check.hpp"
 #include "support/support.hpp"
 #include "support/tet_fixtures.hpp"
+#include "volume/front.hpp"
 #include "volume/to_mesh.hpp"
 
 namespace delfront::fixtures {
@@ -247,6 +248,8 @@ void expect_curves(const Model& model, const BoundaryGrid& grid, const RecoveryR
 
 }  // namespace
 
+constexpr std::size_t kMostForFront = 3000;  ///< triangles of a model
+
 Recovered expect_recovered(const Model& model, double volume, const DomainOptions& domain) {
   expect_valid_surface(model);
   Recovered result;
@@ -271,6 +274,26 @@ Recovered expect_recovered(const Model& model, double volume, const DomainOption
   if (!std::isnan(volume)) EXPECT_NEAR(result.volume, volume, tolerance);
   result.mesh = to_mesh(result.grid, model);
   for (const Finding& f : check(result.mesh)) EXPECT_NE(f.severity, Severity::error) << f.message;
+  if (model.triangles.size() <= kMostForFront) {
+    const auto r = expect_filled_by_front(model, result.grid, domain);
+    EXPECT_NEAR(total_volume(r.grid.complex), result.volume, tolerance);
+  }
+  return result;
+}
+
+FilledByFront expect_filled_by_front(const Model& model, const BoundaryGrid& empty, const DomainOptions& domain,
+                                     int threads) {
+  FilledByFront result{empty, {}};
+  Context context;
+  context.threads = threads;
+  BoundarySizes sizes;
+  for (const TetVertex& v : empty.complex.vertex)
+    if (v.h > 0) sizes.points.push_back(v.point()), sizes.size.push_back(v.h);
+  const auto field = build_boundary_size_field(sizes, context);
+  result.report = fill_by_front(result.grid, *field, context);
+  EXPECT_EQ(result.grid.complex.find_defect(), "");
+  expect_same_boundary(model, result.grid, domain.keep.empty() && domain.keep_points.empty());
+  for (const Finding& f : check(to_mesh(result.grid, model))) EXPECT_NE(f.severity, Severity::error) << f.message;
   return result;
 }
 

@@ -58,6 +58,17 @@ struct Recovered {
 /// edge of a curve is an edge, kept, or a chain of points that the report names (all of them in kept regions), nothing
 /// stays implicit, the counts of the report add up, and the volume is `volume` (to rounding; NaN: not tested).
 Recovered expect_recovered(const Model& model, double volume, const DomainOptions& domain = {});
+/// Fills small surfaces by the front as well (expect_filled_by_front), to the same volume.
 Recovered expect_recovered(const Facets& facets, double volume, const DomainOptions& domain = {});
+
+/// @brief A grid that the front made.
+struct FilledByFront {
+  BoundaryGrid grid;
+  FrontReport report;
+};
+
+/// @brief Fill a recovered boundary by the front, with sizes of the boundary, and test all that must hold then.
+FilledByFront expect_filled_by_front(const Model& model, const BoundaryGrid& empty, const DomainOptions& domain = {},
+                                     int threads = 1);
 
 }  // namespace delfront::fixtures
