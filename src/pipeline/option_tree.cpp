@@ -297,8 +297,8 @@ std::string planned_note(const std::string& key_or_flag) {
   static const std::set<std::string> planned = {
       "input.heal", "domain.keep.seeds", "boundaries.*.select.id",
       "layers",     "surface",           "volume.elements",
-      "--heal",     "--layers",          "refine",
-      "adapt",      "partition",         "view",
+      "--heal",     "--layers",          "adapt",
+      "partition",  "view",
   };
   for (const std::string& known : planned)
     if (key_or_flag == known || key_or_flag.starts_with(known + ".")) return ": not in this version of delfront";

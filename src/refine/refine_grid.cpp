@@ -61,12 +61,16 @@ void check_arrays(const Mesh& mesh) {
 }
 
 void check_limit(const Mesh& mesh, int levels, const Context& context) {
-  const std::size_t cells = num_cells_after(mesh, levels);
-  if (context.max_cells > 0 && cells > context.max_cells)
-    throw LimitError(
-        fmt::format("stopped: refined {} the grid would have {} cells, and the limit is {}; refine fewer "
-                    "times (--levels) or allow more cells (--max-cells)",
-                    levels == 1 ? "once" : fmt::format("{} times", levels), cells, context.max_cells));
+  constexpr std::uint64_t kMostCells = CellId::kNone - 1;
+  const std::uint64_t cells = num_cells_after(mesh, levels);
+  const bool is_asked = context.max_cells > 0 && context.max_cells < kMostCells;
+  if (cells <= (is_asked ? context.max_cells : kMostCells)) return;
+  const std::string times = levels == 1 ? "once" : fmt::format("{} times", levels);
+  const std::string count = cells > kMostCells ? fmt::format("more than {}", kMostCells) : std::to_string(cells);
+  throw LimitError(fmt::format(
+      "stopped: refined {} the grid would have {} cells{}; refine fewer times (--levels){}", times, count,
+      is_asked ? fmt::format(", and the limit is {}", context.max_cells) : ", which is all that this version can hold",
+      is_asked ? " or allow more cells (--max-cells)" : ""));
 }
 
 /// One level; its steps read in `run`.
