@@ -16,7 +16,7 @@ struct RefineGridOptions {
   double feature_angle_deg = 40;  ///< edges of the grid and of the model that turn by more are features
   /// Of the volume that a child cell has, at each corner, with points in the middle, this much must be left when they
   /// are on the geometry: else they go back. 0: positive is enough.
-  double least_volume_share = 0.1;
+  double least_volume_share = 0.25;
 };
 
 /// @brief What refine_grid did, over all levels.

@@ -31,9 +31,8 @@ void fail_check(const char* condition, const char* file, int line) {
 void Context::check_limits() const {
   if (cancel && cancel->load(std::memory_order_relaxed)) throw Cancelled();
   if (time_limit > 0 && seconds_since_start() > time_limit)
-    throw LimitError(
-        fmt::format("stopped: the time limit of {:g} s is reached; {} or allow more time (--time-limit)", time_limit,
-                    limit_advice));
+    throw LimitError(fmt::format("stopped: the time limit of {:g} s is reached; {} or allow more time (--time-limit)",
+                                 time_limit, limit_advice));
   if (memory_limit == 0) return;
   if (const std::uint64_t held = resident_memory(); held > memory_limit)
     throw LimitError(

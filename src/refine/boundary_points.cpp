@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kGrain = 256;     ///< points a task
 constexpr double kReach = 0.5;          ///< of an edge's length: what is further away is something else
+constexpr double kOnFeature = 0.05;     ///< of an edge's length: its ends are there, if it stands for a feature
 constexpr double kAlreadyThere = 1e-9;  ///< of an edge's length: rounding
 
 /// A face or line that has the new point: as one of its edges' middles, or as its own.
@@ -121,7 +122,7 @@ class MovedPointFinder {
       if (hit.distance <= kAlreadyThere * edge) return {};
       return MovedPoint{holders[0].point, middle, hit.at, on_feature};
     };
-    if (may_be_feature(holders)) {
+    if (may_be_feature(holders) && has_ends_on_features(a, b, kOnFeature * edge)) {
       const Holder& last = holders.back();
       const GroupId curve = last.is_line ? group_of(lines_, last.cell) : GroupId();
       if (mesh_.dimension == 2 && !geometry_.is_known(curve)) return {};
@@ -151,6 +152,11 @@ class MovedPointFinder {
     const double sign = holders[0].is_forward == holders[1].is_forward ? -1 : 1;
     const double cosine = sign * dot(normal_of(holders[0].cell), normal_of(holders[1].cell));
     return cosine < geometry_.cos_feature_angle() && geometry_.is_known(group);
+  }
+
+  /// Else the edge is sharp only because the grid is coarse there. In the plane all that is known is curves.
+  bool has_ends_on_features(Point a, Point b, double tolerance) const {
+    return mesh_.dimension == 2 || (geometry_.is_on_feature(a, tolerance) && geometry_.is_on_feature(b, tolerance));
   }
 
   bool is_any_known(std::span<const Holder> holders) const {

@@ -135,4 +135,11 @@ TrueGeometry::Hit TrueGeometry::nearest_on_features(Point p, Point direction, Gr
       reach);
 }
 
+bool TrueGeometry::is_on_feature(Point p, double tolerance) const {
+  return features_
+      .nearest_if(
+          p, [](std::uint32_t) { return true; }, tolerance)
+      .found();
+}
+
 }  // namespace delfront

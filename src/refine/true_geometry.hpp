@@ -27,6 +27,8 @@ class TrueGeometry {
   /// @brief The nearest place of the feature edges and curves, within `reach`.
   /// @param curve  a group of lines: of the curves of its name, where there are some; may be invalid
   Hit nearest_on_features(Point p, Point direction, GroupId curve, double reach) const;
+  /// @return whether p lies on some feature edge or curve, within `tolerance`
+  bool is_on_feature(Point p, double tolerance) const;
   /// @return false where the group's faces are not in the model, so that their points must not be moved
   bool is_known(GroupId group) const;
 
