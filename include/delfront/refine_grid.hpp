@@ -48,7 +48,8 @@ struct RefineGridReport {
 /// points of it that were moved go half the way back, then all of it; so a valid grid stays valid.
 /// @param mesh  a valid grid (see check()): in the plane, in space, or a surface
 /// @throws UsageError    levels below 1, options out of range
-/// @throws InputError    polygons or polyhedra; stored faces or lines that no cell has
+/// @throws InputError    polygons or polyhedra; stored faces or lines that no cell has; a model out of a plane grid's
+/// plane
 /// @throws MeshingError  a cell so warped or flat that its children cannot be positive with points in the middle
 /// @throws LimitError    context.max_cells, or more points than 2^32 - 2
 /// @par Threads  the same bytes for any number

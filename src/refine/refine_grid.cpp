@@ -73,6 +73,16 @@ void check_limit(const Mesh& mesh, int levels, const Context& context) {
       is_asked ? " or allow more cells (--max-cells)" : ""));
 }
 
+void check_model(const Mesh& mesh, const Model& model) {
+  if (mesh.dimension != 2) return;
+  for (const Point& p : model.points)
+    if (p.z != 0)
+      throw InputError(fmt::format("the geometry of a grid in the plane lies in the plane too; here is a point at "
+                                   "({:.9g}, {:.9g}, {:.9g})",
+                                   p.x, p.y, p.z),
+                       {{p, {}}});
+}
+
 /// One level; its steps read in `run`.
 class Level {
  public:
@@ -175,6 +185,7 @@ Mesh refine_grid(const Mesh& mesh, const RefineGridOptions& options, RefineGridR
   report = {};
   std::optional<TrueGeometry> geometry;
   if (options.model) {
+    check_model(mesh, *options.model);
     geometry.emplace(*options.model, mesh.groups, options.feature_angle_deg);
     report.groups_not_in_model = geometry->unknown_groups();
   }

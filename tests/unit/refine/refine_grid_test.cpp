@@ -293,6 +293,7 @@ TEST(RefineGrid, what_cannot_be_refined_is_refused) {
   EXPECT_THROW(refine_grid(loose, {}, report, context), InputError);
   const Model sphere = sphere_model(1);
   EXPECT_THROW(refine_grid(loose, {.model = &sphere}, report, context), InputError);
+  EXPECT_THROW(refine_grid(grids::square(2), {.model = &sphere}, report, context), InputError);
   Mesh broken = tet;
   broken.block(CellType::tetrahedron).vertices[2] = VertexId(77);
   EXPECT_THROW(refine_grid(broken, {}, report, context), InputError);
