@@ -40,6 +40,17 @@ struct RefineReport {
   KernelCounts kernel;
 };
 
+/// @brief What the advancing front did (F5 to F17).
+struct FrontReport {
+  std::size_t sides_processed = 0;     ///< sides (in the volume: faces) that a cell was looked for over
+  std::size_t triangles = 0;           ///< made by the front, in the plane
+  std::size_t points = 0;              ///< put in by the front
+  std::size_t sweeps = 0;              ///< over the sides that were left, the first one included
+  std::size_t cavities = 0;            ///< what the sweeps left: parts each bounded by closed loops of sides
+  std::size_t closed_by_delaunay = 0;  ///< cells put into those
+  double crossing_share = 0;           ///< of the front's time in crossing tests, from a sample of its steps
+};
+
 /// @brief What improvement did (T5).
 struct ImproveReport {
   std::size_t passes = 0;
@@ -53,6 +64,7 @@ struct Report {
   SurfaceReport surface;
   RecoveryReport recovery;
   RefineReport refine;
+  FrontReport front;
   ImproveReport improve;
   QualityReport quality;
   std::vector<std::string> warnings;
