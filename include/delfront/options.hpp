@@ -167,6 +167,8 @@ struct SizeOptions {
 
 /// @brief Grids in the plane.
 struct PlanarOptions {
+  /// front: a pure advancing front; front-delaunay: its points, connected by Delaunay; delaunay: circumcentres
+  std::string method = "front-delaunay";
   std::string boundary = "keep";  ///< keep: the given points and no others; split: divided where sizes ask for it
   double min_angle = 30;          ///< degrees, goal
 };

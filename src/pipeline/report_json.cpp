@@ -118,6 +118,16 @@ Json to_json(const RefineReport& r) {
           {"kernel", to_json(r.kernel)}};
 }
 
+Json to_json(const FrontReport& r) {
+  return {{"sides_processed", r.sides_processed},
+          {"triangles", r.triangles},
+          {"points", r.points},
+          {"sweeps", r.sweeps},
+          {"cavities", r.cavities},
+          {"closed_by_delaunay", r.closed_by_delaunay},
+          {"crossing_share", number(r.crossing_share)}};
+}
+
 Json to_json(const ImproveReport& r) {
   return {{"passes", r.passes},
           {"face_swaps", r.face_swaps},
@@ -278,6 +288,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"surface", to_json(result.report.surface)},
       {"recovery", to_json(result.report.recovery)},
       {"refine", to_json(result.report.refine)},
+      {"front", to_json(result.report.front)},
       {"improve", to_json(result.report.improve)},
       {"quality", to_json(result.report.quality)},
       {"boundaries", groups_json(result.mesh, 2)},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planar/front.hpp"
 #include "planar/improve.hpp"
 #include "planar/kernel.hpp"
 #include "planar/prepare.hpp"
@@ -136,6 +137,10 @@ void warn_of_long_segments(PlanarGrid& grid, const SizeField& asked) {
                     num_long, lengths[worst], sizes[worst], middles[worst].x, middles[worst].y));
 }
 
+PointPlacement placement_of(const std::string& method) {
+  return method == "delaunay" ? PointPlacement::circumcentres : PointPlacement::frontal;
+}
+
 }  // namespace
 
 std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& context) {
@@ -177,7 +182,10 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
   Outcome outcome;
   Report& report = outcome.report;
   auto [grid, size] = prepare_planar(domain, options, asked, context);
-  report.refine = refine_complex(grid, *size, context);
+  if (options.planar.method == "front")
+    report.front = fill_by_front(grid, *size, context);
+  else
+    report.refine = refine_complex(grid, *size, context, placement_of(options.planar.method));
   if (options.improve.enabled)
     report.improve = improve_complex(grid,
                                      {.min_angle = options.planar.min_angle,

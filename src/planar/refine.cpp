@@ -43,8 +43,8 @@ struct Proposal {
 
 class Refinement {
  public:
-  Refinement(PlanarGrid& grid, const SizeField& size, Context& context)
-      : grid_(grid), c_(grid.complex), size_(size), context_(context), kernel_(c_) {}
+  Refinement(PlanarGrid& grid, const SizeField& size, PointPlacement placement, Context& context)
+      : grid_(grid), c_(grid.complex), size_(size), placement_(placement), context_(context), kernel_(c_) {}
 
   RefineReport run() {
     set_floors();
@@ -55,14 +55,15 @@ class Refinement {
       c_.tri[t].flags = (c_.tri[t].flags & kEdgeBits) | queued;
       fresh_.push_back(t);
     }
-    for (bool is_frontal = true;;) {
+    const bool has_front = placement_ == PointPlacement::frontal;
+    for (bool is_frontal = has_front;;) {
       collect_candidates();
       propose(is_frontal);
       ask_sizes();
       const std::size_t inserted = insert();
       ++report_.rounds;
       if (inserted > 0) {
-        is_frontal = true;  // the front goes on from there
+        is_frontal = has_front;  // the front goes on from there
         continue;
       }
       if (!is_frontal) break;
@@ -234,6 +235,7 @@ class Refinement {
   PlanarGrid& grid_;
   TriComplex& c_;
   const SizeField& size_;
+  PointPlacement placement_;
   Context& context_;
   PlanarKernel kernel_;
   RefineReport report_;
@@ -247,9 +249,10 @@ class Refinement {
 
 }  // namespace
 
-RefineReport refine_complex(PlanarGrid& grid, const SizeField& size, Context& context, PlanarCounts* counts) {
+RefineReport refine_complex(PlanarGrid& grid, const SizeField& size, Context& context, PointPlacement placement,
+                            PlanarCounts* counts) {
   const StageTimer timer(context, "refine");
-  Refinement refinement(grid, size, context);
+  Refinement refinement(grid, size, placement, context);
   const RefineReport report = refinement.run();
   if (counts) *counts = refinement.counts();
   return report;

@@ -276,6 +276,7 @@ Options unusual_options() {
       {"size.adaptive.refine_above", "2"},
       {"size.adaptive.smooth", "true"},
       {"planar.boundary", "split"},
+      {"planar.method", "front"},
       {"planar.min_angle", "25"},
       {"volume.method", "none"},
       {"volume.core", "false"},
