@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kLongestOverSide = 1.6;    ///< sides over a short side, of its length: 36 degrees between them
 constexpr double kShortestOverSide = 0.68;  ///< sides over a long side, of its length: 95 degrees between them
+constexpr double kLeastGrowth = 0.8, kMostGrowth = 1.25;  ///< of sizes from a side to half a triangle ahead
 constexpr std::size_t kSidesPerCancelCheck = 4096;
 constexpr std::size_t kSidesPerSample = 64;  ///< one in so many is timed
 constexpr std::uint32_t kNone = 0xffffffffu;
@@ -104,6 +105,14 @@ class Front {
     const FrontMetric mean = FrontMetric::mean_of(metric_[s.from], metric_[s.to]);
     return mean.scaled(std::max(1.0, mean.size() / h_of(s.region)));
   }
+  /// Sizes ahead of a side over those at it, half a triangle on, as they have grown since the triangle behind it.
+  double growth_ahead(const Side& s) const {
+    if (s.behind == kNoTri || c_.tri[s.behind >> 2].region == kOutside) return 1;
+    const VertexIndex apex = c_.apex(s.behind);
+    if (apex >= c_.h.size()) return 1;
+    return std::clamp(1.5 - c_.h[apex] / (c_.h[s.from] + c_.h[s.to]), kLeastGrowth, kMostGrowth);
+  }
+
   double h_of(std::uint32_t region) const { return grid_.region_h[region]; }
 
   /// Length of the sides wanted over one of a length in the metric.
@@ -261,7 +270,7 @@ class Front {
 
   bool find_triangle(std::uint32_t s) {
     const Side side = sides_[s];
-    const FrontFrame frame(at(side.from), at(side.to), metric_of(side));
+    const FrontFrame frame(at(side.from), at(side.to), metric_of(side).scaled(1 / growth_ahead(side)));
     const double wanted = wanted_over(frame.length);
     near_.gather(search_, found_as(s), frame, rules_.reach * std::max(wanted, frame.length));
     const Point2 ideal = {0, std::sqrt(wanted * wanted - 0.25 * frame.length * frame.length)};
