@@ -22,6 +22,7 @@ constexpr double kShortestOverSide = 0.68;  ///< sides over a long side, of its 
 constexpr double kLeastGrowth = 0.8, kMostGrowth = 1.25;  ///< of sizes from a side to half a triangle ahead
 constexpr std::size_t kSidesPerCancelCheck = 4096;
 constexpr std::size_t kSidesPerSample = 64;  ///< one in so many is timed
+constexpr double kInterrupted = 1e-4;        ///< seconds: a step that took longer was not running all the time
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// What a sweep asks of a triangle; lengths are in the side's frame, relative to the sides wanted there.
@@ -253,10 +254,15 @@ class Front {
   bool work_on(std::uint32_t s) {
     if (report_.sides_processed % kSidesPerSample != 0) return find_triangle(s);
     is_timed_ = true;
+    in_tests_ = 0;
     const auto begin = std::chrono::steady_clock::now();
     const bool is_done = find_triangle(s);
-    sampled_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     is_timed_ = false;
+    if (seconds < kInterrupted) {
+      sampled_ += seconds;
+      sampled_in_tests_ += in_tests_;
+    }
     return is_done;
   }
 
@@ -264,7 +270,7 @@ class Front {
     if (!is_timed_) return near_.is_free(p, apex);
     const auto begin = std::chrono::steady_clock::now();
     const bool is_free = near_.is_free(p, apex);
-    sampled_in_tests_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    in_tests_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return is_free;
   }
 
@@ -408,7 +414,7 @@ class Front {
   std::vector<Waiting> fresh_, batch_, left_;
 
   bool is_timed_ = false;
-  double sampled_ = 0, sampled_in_tests_ = 0;
+  double sampled_ = 0, sampled_in_tests_ = 0, in_tests_ = 0;
 };
 
 }  // namespace

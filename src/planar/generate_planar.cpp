@@ -10,6 +10,7 @@
 #include "planar/kernel.hpp"
 #include "planar/prepare.hpp"
 #include "planar/refine.hpp"
+#include "planar/smooth.hpp"
 #include "planar/split.hpp"
 #include "planar/to_mesh.hpp"
 #include "sizing/asked_sizes.hpp"
@@ -141,6 +142,26 @@ PointPlacement placement_of(const std::string& method) {
   return method == "delaunay" ? PointPlacement::circumcentres : PointPlacement::frontal;
 }
 
+/// What a front leaves is smoothed first; triangles that are to be stretched are left alone, since angles say nothing
+/// of them.
+void improve_grid(PlanarGrid& grid, const Options& options, const SizeField& size, VertexIndex first_free,
+                  Report& report, Context& context) {
+  const bool is_front = options.planar.method == "front", is_stretched = is_front && !size.is_isotropic();
+  grid.complex.index_vertices();
+  if (!options.improve.enabled) return;
+  if (is_stretched) {
+    grid.warnings.push_back("the sizes ask for stretched triangles: improvement, which goes by angles, was left out");
+    return;
+  }
+  ImproveReport smoothed;
+  if (is_front) smoothed = smooth_complex(grid, {.first_free = first_free}, context);
+  report.improve = improve_complex(
+      grid, {.min_angle = options.planar.min_angle, .max_passes = options.improve.max_passes, .first_free = first_free},
+      context);
+  report.improve.points_moved += smoothed.points_moved;
+  report.improve.edge_swaps += smoothed.edge_swaps;
+}
+
 }  // namespace
 
 std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& context) {
@@ -186,14 +207,7 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
     report.front = fill_by_front(grid, *size, context);
   else
     report.refine = refine_complex(grid, *size, context, placement_of(options.planar.method));
-  if (options.improve.enabled)
-    report.improve = improve_complex(grid,
-                                     {.min_angle = options.planar.min_angle,
-                                      .max_passes = options.improve.max_passes,
-                                      .first_free = static_cast<VertexIndex>(domain.points.size())},
-                                     context);
-  else
-    grid.complex.index_vertices();
+  improve_grid(grid, options, *size, static_cast<VertexIndex>(domain.points.size()), report, context);
   report.warnings = grid.warnings;
   outcome.mesh = to_mesh(grid, domain);
   if (options.output.sizes) add_size_field(outcome.mesh, *size, context);

@@ -9,9 +9,9 @@ namespace delfront {
 
 namespace {
 
-constexpr double kRegular = 0.995;    ///< mean quality of a star that is left alone
-constexpr double kSmoothAngle = 0.41; ///< squared sine of 40 degrees: worse angles are not made
-constexpr double kLeastGain = 1e-3;   ///< of a star's mean quality
+constexpr double kRegular = 0.995;     ///< mean quality of a star that is left alone
+constexpr double kSmoothAngle = 0.41;  ///< squared sine of 40 degrees: worse angles are not made
+constexpr double kLeastGain = 1e-3;    ///< of a star's mean quality
 constexpr std::size_t kVerticesPerCancelCheck = 1 << 16;
 constexpr double kRegularHeight = 0.86602540378443865;
 
@@ -91,13 +91,16 @@ class Smoothing {
       for (const VertexIndex w : c_.tri[t].node) is_calm_[w] = false;
   }
 
-  /// The star of a vertex that may move.
+  /// The star of a vertex that may move; false for those on segments.
   bool collect(VertexIndex v) {
     if (!collect_star(c_, v, star_, vertices_)) return false;
     ring_.clear();
     for (const VertexIndex w : vertices_) ring_.push_back(at(w));
-    for (const TriIndex t : star_)
-      if (c_.tri[t].region == kOutside) return false;
+    for (const TriIndex t : star_) {
+      const Triangle& s = c_.tri[t];
+      const unsigned i = s.node[0] == v ? 0 : s.node[1] == v ? 1 : 2;
+      if (s.flags >> next_of(i) & 1 || s.region == kOutside) return false;
+    }
     return true;
   }
 
