@@ -33,11 +33,12 @@ struct Rules {
   double preferred;  ///< ... and one whose triangle is this good, relative to the ideal one
   double to_points;  ///< a new point keeps this far from points ...
   double to_sides;   ///< ... and this far from sides
+  double passing;    ///< a new side to a point that is there passes other points at this distance
 };
 constexpr Rules kSweeps[] = {
-    {0.3, 1.6, 0.6, 0.9, 0.65, 0.5},
-    {0.2, 2, 0.6, 0.7, 0.5, 0.4},
-    {0.1, 3, 0.6, 0.7, 0.3, 0.3},
+    {0.3, 1.6, 0.6, 0.9, 0.65, 0.5, 0.3},
+    {0.2, 2, 0.6, 0.7, 0.5, 0.4, 0.15},
+    {0.1, 3, 0.6, 0.7, 0.3, 0.3, 0},
 };
 constexpr std::size_t kMostSweeps = 8;  ///< the last rules again as long as they find something
 
@@ -284,18 +285,19 @@ class Front {
     const double reuse2 = rules_.reuse * rules_.reuse * wanted * wanted;
     for (const FrontNeighbours::Candidate& c : near_.candidates()) {
       const bool is_preferred = c.quality >= least || squared_length(c.at - ideal) <= reuse2;
-      if (is_preferred && c.quality >= rules_.floor && take(s, c.v)) return true;
+      if (is_preferred && c.quality >= rules_.floor && take(s, c, wanted)) return true;
     }
     if (add_point(s, frame, ideal, wanted)) return true;
     for (const FrontNeighbours::Candidate& c : near_.candidates()) {
       if (c.quality < rules_.floor) break;
-      if (take(s, c.v)) return true;
+      if (take(s, c, wanted)) return true;
     }
     return false;
   }
 
-  bool take(std::uint32_t s, VertexIndex v) {
-    if (!is_free(at(v), v)) return false;
+  bool take(std::uint32_t s, const FrontNeighbours::Candidate& candidate, double wanted) {
+    const VertexIndex v = candidate.v;
+    if (near_.passes_near(candidate, rules_.passing * wanted) || !is_free(at(v), v)) return false;
     if (first_out_[v] == kNone) tie_in(v);
     make_triangle(s, v);
     return true;

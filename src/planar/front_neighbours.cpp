@@ -19,6 +19,7 @@ bool leads_inside(Point2 e, Point2 c, Point2 g, Point2 w) { return orient2d(e, c
 
 void FrontNeighbours::gather(const SideGrid& grid, const FrontSide& side, const FrontFrame& frame, double reach) {
   own_ = side;
+  length_ = frame.length;
   sides_.clear();
   candidates_.clear();
   const double half = std::max(reach, 0.5 * frame.length);
@@ -69,6 +70,29 @@ bool FrontNeighbours::is_free(Point2 p, VertexIndex apex) const {
   for (const Side& s : sides_)
     if (meets(s, p, apex)) return false;
   return true;
+}
+
+bool FrontNeighbours::passes_near(const Candidate& apex, double distance) const {
+  const double squared = distance * distance;
+  const Point2 ends[2] = {{-0.5 * length_, 0}, {0.5 * length_, 0}};
+  bool is_new[2] = {true, true};
+  for (const Side& s : sides_) {
+    is_new[0] = is_new[0] && !(s.from == apex.v && s.to == own_.from);
+    is_new[1] = is_new[1] && !(s.from == own_.to && s.to == apex.v);
+  }
+  for (unsigned k = 0; k < 2; ++k) {
+    if (!is_new[k]) continue;
+    const Point2 along = apex.at - ends[k];
+    const double l2 = squared_length(along);
+    for (const Side& s : sides_) {
+      const Point2 to = s.at_a - ends[k];
+      const double projection = dot(to, along);
+      if (projection <= 0 || projection >= l2 || s.from == apex.v || s.from == own_.from || s.from == own_.to) continue;
+      const double area = cross(along, to);
+      if (area * area < squared * l2) return true;
+    }
+  }
+  return false;
 }
 
 bool FrontNeighbours::is_near(Point2 at, double to_points, double to_sides) const {

@@ -42,6 +42,10 @@ class FrontNeighbours {
   /// @pre p lies within the reach gathered
   bool is_free(Point2 p, VertexIndex apex) const;
 
+  /// @brief Whether the triangle to a point of the front would open a side that passes another point nearer than
+  /// `distance` (in the frame): what would be left between them could only become a sliver.
+  bool passes_near(const Candidate& apex, double distance) const;
+
   /// @brief Whether a new point would stand nearer than this (in the frame) to a point or a side (3.28).
   bool is_near(Point2 at, double to_points, double to_sides) const;
 
@@ -49,6 +53,7 @@ class FrontNeighbours {
   bool meets(const Side& other, Point2 p, VertexIndex apex) const;
 
   FrontSide own_;
+  double length_ = 0;  ///< of the own side in its frame
   std::vector<Side> sides_;
   std::vector<Candidate> candidates_;
 };
