@@ -36,7 +36,7 @@ struct Rules {
   double passing;    ///< a new side to a point that is there passes other points at this distance
 };
 constexpr Rules kSweeps[] = {
-    {0.3, 1.6, 0.6, 0.9, 0.65, 0.5, 0.3},
+    {0.3, 1.6, 0.6, 0.9, 0.7, 0.55, 0.35},
     {0.2, 2, 0.6, 0.7, 0.5, 0.4, 0.15},
     {0.1, 3, 0.6, 0.7, 0.3, 0.3, 0},
 };
