@@ -20,6 +20,7 @@ namespace delfront {
 namespace {
 
 constexpr double kMuchLonger = 1.5;   ///< segments than the size asked for
+constexpr double kHigherGoal = 1.1;   ///< angles worked for after a front, of those asked for
 constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates want
 
 void check_domain(const PlanarDomain& domain) {
@@ -142,7 +143,20 @@ PointPlacement placement_of(const std::string& method) {
   return method == "delaunay" ? PointPlacement::circumcentres : PointPlacement::frontal;
 }
 
-/// What a front leaves is smoothed first; triangles that are to be stretched are left alone, since angles say nothing
+/// One part of improvement after another: counts are added, the worst angle before is the first's.
+void add_up(const ImproveReport& part, ImproveReport& all) {
+  const ImproveReport before = all;
+  all = part;
+  all.passes += before.passes;
+  all.edge_swaps += before.edge_swaps;
+  all.points_moved += before.points_moved;
+  all.points_removed += before.points_removed;
+  all.points_added += before.points_added;
+  if (before.passes > 0) all.min_dihedral_before_deg = before.min_dihedral_before_deg;
+}
+
+/// What a front leaves is smoothed first, and worked on for a higher goal than asked for, since triangles just above it
+/// keep their neighbours below; triangles that are to be stretched are left alone, since angles say nothing
 /// of them.
 void improve_grid(PlanarGrid& grid, const Options& options, const SizeField& size, VertexIndex first_free,
                   Report& report, Context& context) {
@@ -153,13 +167,15 @@ void improve_grid(PlanarGrid& grid, const Options& options, const SizeField& siz
     grid.warnings.push_back("the sizes ask for stretched triangles: improvement, which goes by angles, was left out");
     return;
   }
-  ImproveReport smoothed;
-  if (is_front) smoothed = smooth_complex(grid, {.first_free = first_free}, context);
-  report.improve = improve_complex(
-      grid, {.min_angle = options.planar.min_angle, .max_passes = options.improve.max_passes, .first_free = first_free},
-      context);
-  report.improve.points_moved += smoothed.points_moved;
-  report.improve.edge_swaps += smoothed.edge_swaps;
+  PlanarImproveOptions goals{
+      .min_angle = options.planar.min_angle, .max_passes = options.improve.max_passes, .first_free = first_free};
+  if (is_front) {
+    add_up(smooth_complex(grid, {.first_free = first_free}, context), report.improve);
+    PlanarImproveOptions higher = goals;
+    higher.min_angle *= kHigherGoal;
+    add_up(improve_complex(grid, higher, context), report.improve);
+  }
+  add_up(improve_complex(grid, goals, context), report.improve);
 }
 
 }  // namespace

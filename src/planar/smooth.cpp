@@ -2,6 +2,7 @@
 #include "planar/smooth.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "planar/edit.hpp"
 
@@ -21,6 +22,7 @@ class Smoothing {
       : c_(grid.complex), options_(options), context_(context) {}
 
   ImproveReport run() {
+    report_.min_dihedral_before_deg = smallest_angle_deg();
     make_all_delaunay();
     is_calm_.assign(c_.point.size(), false);
     for (int pass = 0; pass < options_.passes; ++pass) {
@@ -33,6 +35,7 @@ class Smoothing {
       if (report_.points_moved == before) break;
       make_all_delaunay();
     }
+    report_.min_dihedral_after_deg = smallest_angle_deg();
     return report_;
   }
 
@@ -42,6 +45,16 @@ class Smoothing {
   };
 
   Point2 at(VertexIndex v) const { return c_.point[v]; }
+
+  double smallest_angle_deg() const {
+    double worst = 1;
+    for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+      const Triangle& s = c_.tri[t];
+      if (!c_.is_dead(t) && !c_.is_ghost(t) && s.region != kOutside)
+        worst = std::min(worst, squared_sine(at(s.node[0]), at(s.node[1]), at(s.node[2])));
+    }
+    return std::asin(std::sqrt(worst)) * 180 / std::numbers::pi;
+  }
 
   void make_all_delaunay() {
     edges_.clear();
