@@ -127,6 +127,7 @@ class Front {
   void start() {
     Point2 low = {1e300, 1e300}, high = {-1e300, -1e300};
     std::vector<std::uint32_t> side_of(4 * c_.tri.size(), kNone);
+    reserve();
     first_out_.assign(c_.point.size(), kNone);
     for (TriIndex t = 0; t < c_.tri.size(); ++t) {
       if (!is_inside(t)) continue;
@@ -141,6 +142,24 @@ class Front {
     add_loose_points();
     for (TriIndex t = static_cast<TriIndex>(c_.tri.size()); t-- > 0;)
       if (is_inside(t)) c_.free_slot(t);
+  }
+
+  /// Room for what the largest sizes at the corners ask for, so that arrays are rarely moved.
+  void reserve() {
+    double triangles = 0;
+    for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+      if (!is_inside(t)) continue;
+      const VertexIndex* n = c_.tri[t].node;
+      const double h = std::min(std::max({c_.h[n[0]], c_.h[n[1]], c_.h[n[2]]}), h_of(c_.tri[t].region));
+      triangles += cross(at(n[1]) - at(n[0]), at(n[2]) - at(n[0])) / (h * h);
+    }
+    triangles = std::min(1.2 * triangles, double(kMostTriangles) / 2);  // a regular one has sqrt(3)/4 h^2
+    const auto points = static_cast<std::size_t>(0.5 * triangles) + c_.point.size();
+    c_.tri.reserve(static_cast<std::size_t>(triangles) + c_.tri.size());
+    c_.point.reserve(points);
+    c_.h.reserve(points);
+    first_out_.reserve(points);
+    if (!is_isotropic_) metric_.reserve(points);
   }
 
   bool is_inside(TriIndex t) const { return c_.tri[t].region != kOutside && !c_.is_dead(t) && !c_.is_ghost(t); }
