@@ -58,11 +58,14 @@ inline void add_line(PlanarDomain& domain, const std::vector<Point2>& line, cons
 }
 
 /// @brief A star-shaped polygon of radius 0.6 to 1 with about n corners; in it, apart from each other, a hole, a
-/// region, a line and points, some of them very near to others.
+/// region, a line, two lines with a thin slot between them, and points, some of them very near to others. One in five
+/// has spikes instead: radii from 0.01 on.
 inline PlanarDomain random_domain(std::mt19937_64& random, int n) {
   std::uniform_real_distribution<double> unit(0, 1);
   PlanarDomain domain;
-  add_loop(domain, star(random, {0, 0}, 0.6, 1, std::max(n, 8)), "outer");
+  const bool is_spiky = random() % 5 == 0;
+  add_loop(domain, star(random, {0, 0}, is_spiky ? 0.01 : 0.6, 1, std::max(n, 8)), "outer");
+  if (is_spiky) return domain;
   const auto few = [&](int least) { return least + int(random() % 12); };
   if (random() % 2) add_loop(domain, reversed(star(random, {0.3, 0}, 0.01, 0.1 + 0.1 * unit(random), few(4))), "hole");
   if (random() % 2) add_loop(domain, star(random, {-0.3, 0}, 0.05, 0.2, few(4)), "region");
@@ -71,6 +74,11 @@ inline PlanarDomain random_domain(std::mt19937_64& random, int n) {
     for (int i = 0, k = few(2); i < k; ++i)
       line.push_back({-0.25 + 0.5 * i / k + 0.01 * unit(random), 0.3 + 0.05 * unit(random)});
     add_line(domain, line, "line");
+  }
+  if (random() % 3 == 0) {
+    const double gap = std::pow(10, -1.5 - 6 * unit(random));
+    for (const double y : {-0.36, -0.36 + gap})
+      add_line(domain, {{-0.15, y}, {0.1 * unit(random), y}, {0.15, y}}, "slot");
   }
   for (int i = 0, k = few(0); i < k; ++i) {
     const Point2 p = {-0.2 + 0.4 * unit(random), -0.3 + 0.08 * unit(random)};
