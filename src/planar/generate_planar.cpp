@@ -139,6 +139,11 @@ void warn_of_long_segments(PlanarGrid& grid, const SizeField& asked) {
                     num_long, lengths[worst], sizes[worst], middles[worst].x, middles[worst].y));
 }
 
+/// Only the front makes stretched triangles; the other methods use the least size over all directions.
+bool is_stretched(const Options& options, const SizeField& size) {
+  return options.planar.method == "front" && !size.is_isotropic();
+}
+
 PointPlacement placement_of(const std::string& method) {
   return method == "delaunay" ? PointPlacement::circumcentres : PointPlacement::frontal;
 }
@@ -160,10 +165,10 @@ void add_up(const ImproveReport& part, ImproveReport& all) {
 /// of them.
 void improve_grid(PlanarGrid& grid, const Options& options, const SizeField& size, VertexIndex first_free,
                   Report& report, Context& context) {
-  const bool is_front = options.planar.method == "front", is_stretched = is_front && !size.is_isotropic();
+  const bool is_front = options.planar.method == "front";
   grid.complex.index_vertices();
   if (!options.improve.enabled) return;
-  if (is_stretched) {
+  if (is_stretched(options, size)) {
     grid.warnings.push_back("the sizes ask for stretched triangles: improvement, which goes by angles, was left out");
     return;
   }
@@ -205,8 +210,10 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
   const double largest = largest_size(measure_boundary(grid));
   prepared.size = build_size_field(grid, options.size, largest, asked, context);
   if (options.planar.boundary == "split") {
-    split_segments(grid, *prepared.size, context);
-    prepared.size = build_size_field(grid, options.size, largest, asked, context);
+    const bool in_metric = is_stretched(options, *prepared.size);
+    split_segments(grid, *prepared.size, in_metric, context);
+    // Short pieces across the direction of long triangles must not bound sizes along it.
+    if (!in_metric) prepared.size = build_size_field(grid, options.size, largest, asked, context);
   }
   if (options.planar.boundary == "keep" && asked) warn_of_long_segments(grid, *asked);
   set_vertex_sizes(grid.complex, *prepared.size, context);

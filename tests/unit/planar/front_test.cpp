@@ -161,6 +161,31 @@ TEST(FillByFront, F5_lengths_are_those_of_a_stretched_metric) {
   }
 }
 
+TEST(FillByFront, F5_a_boundary_is_divided_in_the_metric) {
+  PlanarDomain domain;
+  add_loop(domain, {{0, 0}, {1, 0}, {1, 1}, {0, 1}}, "outer");
+  Options options;
+  options.planar.method = "front";
+  options.planar.boundary = "split";
+  Context context;
+  const auto sizes = std::make_shared<Stretched>(0.01, 12);
+  auto [grid, size] = prepare_planar(domain, options, sizes, context);
+  std::size_t good = 0;
+  for (const PlanarPiece& piece : grid.pieces) {
+    const Point2 e = grid.complex.point[piece.b] - grid.complex.point[piece.a];
+    Metric metric;
+    sizes->metrics({}, {&metric, 1});
+    const double length = length_in(metric, {e.x, e.y, 0});
+    good += length > 0.7 && length < 1.4;
+  }
+  EXPECT_EQ(good, grid.pieces.size());
+  fill_by_front(grid, *size, context);
+  EXPECT_STREQ(grid.complex.find_defect(), "");
+  Filled filled;
+  measure(grid, *sizes, filled);
+  EXPECT_GT(filled.share_within(0.5, 2), 0.97);
+}
+
 TEST(FillByFront, F5_a_scaled_domain_has_the_same_triangles) {
   std::mt19937_64 random(5);
   const PlanarDomain domain = random_domain(random, 30);
