@@ -173,10 +173,11 @@ std::vector<OptionRow> build_table() {
   add(text_row("planar.boundary", "--boundary", "keep|split",
                "grids in the plane: keep the given boundary points and no others, or split segments by size",
                [](auto& o) -> auto& { return o.planar.boundary; }, {"keep", "split"}));
-  add(text_row("planar.method", "", "",
-               "how the plane is gridded: by an advancing front; by the points of a front, connected by Delaunay; or by "
-               "Delaunay with points at the centres of circles",
-               [](auto& o) -> auto& { return o.planar.method; }, {"front", "front-delaunay", "delaunay"}));
+  add(text_row(
+      "planar.method", "", "",
+      "how the plane is gridded: by an advancing front; by the points of a front, connected by Delaunay; or by "
+      "Delaunay with points at the centres of circles",
+      [](auto& o) -> auto& { return o.planar.method; }, {"front", "front-delaunay", "delaunay"}));
   add(number_row(
       "planar.min_angle", "", "", "grids in the plane: smallest angle to work towards", "degrees from 0 to 40", 0, 40,
       [](auto& o) -> auto& { return o.planar.min_angle; }));
