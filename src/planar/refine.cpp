@@ -10,6 +10,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/hilbert.hpp"
+
 namespace delfront {
 
 namespace {
@@ -44,7 +46,13 @@ struct Proposal {
 class Refinement {
  public:
   Refinement(PlanarGrid& grid, const SizeField& size, PointPlacement placement, Context& context)
-      : grid_(grid), c_(grid.complex), size_(size), placement_(placement), context_(context), kernel_(c_) {}
+      : grid_(grid),
+        c_(grid.complex),
+        size_(size),
+        placement_(placement),
+        context_(context),
+        kernel_(c_),
+        curve_(c_.point) {}
 
   RefineReport run() {
     set_floors();
@@ -145,7 +153,18 @@ class Refinement {
                               kFloorDecay / 3 * (floor_[s.node[0]] + floor_[s.node[1]] + floor_[s.node[2]]), kNoTri,
                               refused_circumcentre, s.region});
     }
+    if (placement_ == PointPlacement::circumcentres) sort_along_curve();
     report_.candidates += proposals_.size();
+  }
+
+  /// Without a front the order of the last round soon follows nothing.
+  void sort_along_curve() {
+    keys_.clear();
+    for (const Proposal& p : proposals_) keys_.push_back({curve_.key(p.at), static_cast<std::uint32_t>(keys_.size())});
+    radix_sort(keys_);
+    sorted_.clear();
+    for (const auto& [key, i] : keys_) sorted_.push_back(proposals_[i]);
+    proposals_.swap(sorted_);
   }
 
   /// Over the shortest edge of the front.
@@ -241,7 +260,9 @@ class Refinement {
   RefineReport report_;
   std::vector<TriIndex> fresh_;  ///< made since the last round; some more than once
   std::vector<TriIndex> candidates_;
-  std::vector<Proposal> proposals_;
+  std::vector<Proposal> proposals_, sorted_;
+  HilbertCurve2 curve_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys_;
   std::vector<Point> places_;
   std::vector<double> sizes_;
   std::vector<double> floor_;  ///< by vertex: no smaller size there, 0 for none
