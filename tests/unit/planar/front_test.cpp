@@ -8,6 +8,7 @@
 #include <map>
 
 #include "front_fixtures.hpp"
+#include "planar/front_neighbours.hpp"
 #include "planar/prepare.hpp"
 #include "planar_fixtures.hpp"
 #include "support/support.hpp"
@@ -44,13 +45,62 @@ TEST(FillByFront, F5_embedded_lines_points_regions_and_holes_stay) {
   EXPECT_GT(filled.mean_quality, 0.9);
 }
 
+/// Whether the side u -> v touches the triangle but at shared corners, in other words than the front's: an end of the
+/// side in the triangle, a corner on the side, or sides that cross.
+bool meets(const std::vector<Point2>& point, const std::array<VertexIndex, 3>& t, VertexIndex u, VertexIndex v) {
+  const Point2 p = point[u], q = point[v], corner[3] = {point[t[0]], point[t[1]], point[t[2]]};
+  for (const VertexIndex end : {u, v}) {
+    if (end == t[0] || end == t[1] || end == t[2]) continue;
+    bool is_in = true;
+    for (int e = 0; e < 3; ++e) is_in &= orient2d(corner[e], corner[(e + 1) % 3], point[end]) >= 0;
+    if (is_in) return true;
+  }
+  if (u == v) return false;
+  for (int k = 0; k < 3; ++k) {
+    if (t[k] != u && t[k] != v && orient2d(p, q, corner[k]) == 0 && dot(corner[k] - p, corner[k] - q) < 0) return true;
+    const Point2 a = corner[k], b = corner[(k + 1) % 3];
+    if (orient2d(a, b, p) * orient2d(a, b, q) < 0 && orient2d(p, q, a) * orient2d(p, q, b) < 0) return true;
+  }
+  return false;
+}
+
+/// Points on a small lattice, so that nearly every case is degenerate somewhere; sides that share all ends they can.
+TEST(FrontNeighbours, F12_decides_as_all_pairs_do_on_a_lattice) {
+  std::size_t num_free = 0, num_touched = 0;
+  for (std::uint64_t seed = 1; seed <= 40000; ++seed) {
+    std::mt19937_64 random(seed);
+    std::vector<Point2> point;
+    while (point.size() < 6) {
+      const Point2 p = {double(random() % 5), double(random() % 5)};
+      if (std::find(point.begin(), point.end(), p) == point.end()) point.push_back(p);
+    }
+    if (orient2d(point[0], point[1], point[2]) <= 0) continue;
+    SideGrid grid;
+    grid.clear({0, 0}, {4, 4});
+    const auto side = [&](VertexIndex from, VertexIndex to, std::uint32_t id) {
+      return FrontSide{point[from], point[to], from, to, id};
+    };
+    grid.insert(side(0, 1, 0));
+    const auto u = static_cast<VertexIndex>(random() % 6), v = static_cast<VertexIndex>(random() % 6);
+    if (u != v || u > 2) grid.insert(side(u, v, 1));
+    FrontNeighbours near;
+    near.gather(grid, side(0, 1, 0), FrontFrame(point[0], point[1], FrontMetric::isotropic(1)), 10);
+    const bool is_new = u != 2 && v != 2 && seed % 2;
+    const bool is_free = near.is_free(point[2], is_new ? kInfinity : 2);
+    const bool wanted = (u == v && u <= 2) || !meets(point, {0, 1, 2}, u, v);
+    ASSERT_EQ(is_free, wanted) << "seed " << seed << ", side " << u << " -> " << v;
+    ++(is_free ? num_free : num_touched);
+  }
+  EXPECT_GT(num_free, 1000u);
+  EXPECT_GT(num_touched, 1000u);
+}
+
 TEST(FillByFront, F12_random_fronts_never_cross_themselves) {
   class Oracle : public FrontWatcher {
    public:
     void before_triangle(const TriComplex& c, std::span<const std::array<VertexIndex, 2>> sides,
                          const std::array<VertexIndex, 3>& t) override {
-      const Point2 corner[3] = {c.point[t[0]], c.point[t[1]], c.point[t[2]]};
-      ASSERT_GT(orient2d(corner[0], corner[1], corner[2]), 0);
+      ASSERT_GT(orient2d(c.point[t[0]], c.point[t[1]], c.point[t[2]]), 0);
       std::map<VertexIndex, int> degree;
       bool is_over_a_side = false;
       for (const auto& [u, v] : sides) {
@@ -58,7 +108,7 @@ TEST(FillByFront, F12_random_fronts_never_cross_themselves) {
         degree[v] -= u != v;
         is_over_a_side |= u == t[0] && v == t[1];
         ASSERT_FALSE(u == t[0] && v == t[2] && !has(sides, v, u)) << "a side that is there is opened again";
-        ASSERT_FALSE(meets(c, t, corner, u, v)) << "triangle " << num_triangles;
+        ASSERT_FALSE(meets(c.point, t, u, v)) << "triangle " << num_triangles;
       }
       ASSERT_TRUE(is_over_a_side);
       for (const auto& [v, surplus] : degree) ASSERT_EQ(surplus, 0) << "the front is not closed at " << v;
@@ -69,25 +119,6 @@ TEST(FillByFront, F12_random_fronts_never_cross_themselves) {
    private:
     static bool has(std::span<const std::array<VertexIndex, 2>> sides, VertexIndex u, VertexIndex v) {
       return std::find(sides.begin(), sides.end(), std::array{u, v}) != sides.end();
-    }
-    /// In other words than the front's: an end of the side in the triangle, a corner on the side, or sides that cross.
-    static bool meets(const TriComplex& c, const std::array<VertexIndex, 3>& t, const Point2* corner, VertexIndex u,
-                      VertexIndex v) {
-      const Point2 p = c.point[u], q = c.point[v];
-      for (const VertexIndex end : {u, v}) {
-        if (end == t[0] || end == t[1] || end == t[2]) continue;
-        bool is_in = true;
-        for (int e = 0; e < 3; ++e) is_in &= orient2d(corner[e], corner[(e + 1) % 3], c.point[end]) >= 0;
-        if (is_in) return true;
-      }
-      if (u == v) return false;
-      for (int k = 0; k < 3; ++k) {
-        if (t[k] != u && t[k] != v && orient2d(p, q, corner[k]) == 0 && dot(corner[k] - p, corner[k] - q) < 0)
-          return true;
-        const Point2 a = corner[k], b = corner[(k + 1) % 3];
-        if (orient2d(a, b, p) * orient2d(a, b, q) < 0 && orient2d(p, q, a) * orient2d(p, q, b) < 0) return true;
-      }
-      return false;
     }
   };
   const unsigned first = setting("DELFRONT_RANDOM_SEED", 1), cases = (setting("DELFRONT_RANDOM_CASES", 200) + 9) / 10;
