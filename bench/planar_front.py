@@ -179,7 +179,8 @@ def main() -> int:
     if not program:
         print(why, file=sys.stderr)
         return 1
-    text = f"{machine.describe()}; one core, medians of {options.repeat}, by `bench/planar_front.py --write-docs`.\n\n"
+    text = f"{machine.describe()}; one core, medians of {options.repeat}, by `bench/planar_front.py --write-docs`; load "
+    text += f"average {machine.load():.1f} when it began (over 1: other work ran beside it).\n\n"
     text += "The unit square, its boundary kept; an angle of 30 degrees asked for. Millions of triangles a second: of the "
     text += "stage that places and connects points, and with smoothing and improvement.\n\n"
     text += "| size | tool | triangles | points, s | the rest, s | 1e6 / s | 1e6 / s, all | mean quality | least angle |\n"
