@@ -40,15 +40,22 @@ struct RefineReport {
   KernelCounts kernel;
 };
 
-/// @brief What the advancing front did (F5 to F17).
+/// @brief What an advancing front did (F1-F17), in the plane or in the volume.
 struct FrontReport {
-  std::size_t sides_processed = 0;     ///< sides (in the volume: faces) that a cell was looked for over
-  std::size_t triangles = 0;           ///< made by the front, in the plane
-  std::size_t points = 0;              ///< put in by the front
-  std::size_t sweeps = 0;              ///< over the sides that were left, the first one included
-  std::size_t cavities = 0;            ///< what the sweeps left: parts each bounded by closed loops of sides
-  std::size_t closed_by_delaunay = 0;  ///< cells put into those
-  double crossing_share = 0;           ///< of the front's time in crossing tests, from a sample of its steps
+  std::size_t sides_processed = 0;     ///< in the plane: sides that a triangle was looked for over
+  std::size_t triangles = 0;           ///< in the plane
+  std::size_t closed_by_delaunay = 0;  ///< in the plane: triangles put into cavities
+  std::size_t faces_processed = 0;     ///< of the front, some more than once
+  std::size_t tets = 0, points = 0;
+  std::size_t rounds = 0, sweeps = 0;
+  std::size_t faces_left = 0;        ///< by the last sweep
+  std::size_t cavities = 0;          ///< closed ones that they made
+  std::size_t tets_emptied = 0;      ///< round these, to be filled anew ...
+  std::size_t tets_refilled = 0;     ///< ... by tets to one point in each
+  std::size_t cavities_left = 0;     ///< even then, closed by constrained Delaunay ...
+  std::size_t tets_of_cavities = 0;  ///< ... with so many tets
+  double crossing_share = 0;         ///< of the time of steps, in crossing tests (F12)
+  std::string gave_up;               ///< why there is no front; refinement took its place
 };
 
 /// @brief What improvement did (T5).

@@ -35,7 +35,7 @@ struct GeometrySources {
 /// @brief Sources much smaller than their size, of sizes within 25 % in one cell of half that size, become one: a ball
 /// round them all with the least of their sizes. So do segments from one such cell to another. So no size rises
 /// anywhere; what falls does so within a size of there. Fine facets of a smooth surface are many more sources than
-/// their sizes need; the automatic sizes are merged.
+/// their sizes need: jobs merge those from curvature, gaps and lines.
 /// @return how many are gone; the report's num_sources is what is left, num_at_hmin stays what it was
 /// @par Cost  O(n log n)
 std::size_t merge_close_sources(GeometrySources& found);
@@ -45,8 +45,6 @@ struct NamedSize {
   std::string pattern;  ///< * any letters, ? one letter; else the name
   double h = 0;         ///< > 0, model units
 };
-
-bool fits_pattern(const std::string& name, const std::string& pattern);
 
 /// @throws UsageError  h not positive; a pattern that fits nothing: the names there are, the one probably meant
 /// @par Cost  O(n + names * patterns)
@@ -138,6 +136,9 @@ struct AutomaticSizes {
   GapSizes::Side side = GapSizes::Side::behind;
   std::function<bool(Point)> is_kept = {};  ///< as GapSizes::is_kept
 };
+
+/// @return 1e-3 of the diagonal of the model's surface: the hmin where none is given
+double usual_hmin(const Model& model);
 
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context);
 

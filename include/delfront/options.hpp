@@ -113,8 +113,8 @@ struct SizeOnOptions {
 /// @brief Sizes at the nodes of a grid (S6).
 struct BackgroundFileOptions {
   std::string file;
-  std::string size = "h";  ///< a scalar field
-  std::string metric;      ///< a tensor field instead
+  std::string size;    ///< a scalar field; empty, and no metric: the field "h", or the only one there is
+  std::string metric;  ///< a tensor field instead
   std::string combine = "min";
   double factor = 1;
 };
@@ -184,8 +184,8 @@ struct PlanarOptions {
 };
 
 struct VolumeOptions {
-  std::string method = "delaunay";  ///< delaunay none
-  bool core = true;                 ///< a regular lattice where sizes are at their largest, far from the boundary
+  std::string method = "front-delaunay";  ///< front front-delaunay delaunay none
+  bool core = true;                       ///< a regular lattice where sizes are at their largest, far from the boundary
 };
 
 struct ImproveOptions {

@@ -51,7 +51,7 @@ struct Simplex {
 struct AlignedBox {
   Box box;
 };
-struct Ball {
+struct SolidSphere {
   Point centre;
   double radius = 0;
 };
@@ -72,7 +72,7 @@ struct FacetShape {
 std::shared_ptr<const FacetSurface> build_facet_surface(std::vector<std::array<Point, 3>> triangles, bool is_solid);
 
 /// @brief What a source is: distance 0 on it and, for solids, inside it.
-using SourceShape = std::variant<Simplex, AlignedBox, Ball, Frustum, FacetShape>;
+using SourceShape = std::variant<Simplex, AlignedBox, SolidSphere, Frustum, FacetShape>;
 
 /// @throws UsageError  a shape that is none: a coordinate not finite, a negative radius, a cylinder without an axis, …
 void check_shape(const SourceShape& shape);

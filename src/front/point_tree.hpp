@@ -40,10 +40,20 @@ class PointTree {
   }
 
   void insert(std::uint32_t id, const Place& at, double reach) {
+    Place half;
+    half.fill(reach);
+    insert(id, at, half);
+  }
+  /// @brief The same with a reach along each axis.
+  void insert(std::uint32_t id, const Place& at, const Place& reach) {
     Entry entry;
     entry.id = id;
-    for (int i = 0; i < kDim; ++i) entry.at[i] = static_cast<float>(at[i] - centre_[i]);
-    entry.reach = static_cast<float>(reach) * kRoundUp;
+    entry.largest = 0;
+    for (int i = 0; i < kDim; ++i) {
+      entry.at[i] = static_cast<float>(at[i] - centre_[i]);
+      entry.reach[i] = static_cast<float>(reach[i]) * kRoundUp;
+      entry.largest = std::max(entry.largest, entry.reach[i]);
+    }
     insert(entry);
   }
 
@@ -58,6 +68,11 @@ class PointTree {
     const auto is_apart = [&](const std::array<float, kDim>& at, float extent) {
       bool apart = false;
       for (int i = 0; i < kDim; ++i) apart |= std::fabs(at[i] - middle[i]) > half[i] + extent;
+      return apart;
+    };
+    const auto is_entry_apart = [&](const Entry& e) {
+      bool apart = false;
+      for (int i = 0; i < kDim; ++i) apart |= std::fabs(e.at[i] - middle[i]) > half[i] + e.reach[i];
       return apart;
     };
     std::array<std::uint32_t, (kChildren - 1) * kMaxDepth + 1> stack;
@@ -75,7 +90,7 @@ class PointTree {
       for (std::uint32_t b = node.bucket; b != kNone; b = buckets_[b].next) {
         const Bucket& bucket = buckets_[b];
         for (std::uint32_t k = 0; k < bucket.count; ++k)
-          if (!is_apart(bucket.entry[k].at, bucket.entry[k].reach)) visit(bucket.entry[k].id);
+          if (!is_entry_apart(bucket.entry[k])) visit(bucket.entry[k].id);
       }
     }
   }
@@ -89,8 +104,8 @@ class PointTree {
   static constexpr float kRoundUp = 1 + 0x1p-20f;
 
   struct Entry {
-    std::array<float, kDim> at;
-    float reach;
+    std::array<float, kDim> at, reach;
+    float largest;  ///< of the reaches
     std::uint32_t id;
   };
   struct Bucket {
@@ -127,7 +142,7 @@ class PointTree {
   float reach_out_of(const Node& node, const Entry& entry) const {
     float out = 0;
     for (int i = 0; i < kDim; ++i) out = std::max(out, std::fabs(entry.at[i] - node.centre[i]) - node.half);
-    return entry.reach + out;
+    return entry.largest + out;
   }
 
   void insert(const Entry& entry) {

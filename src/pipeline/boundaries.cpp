@@ -4,31 +4,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
 #include "pipeline/option_table.hpp"
 
 namespace delfront {
-
-bool matches_pattern(const std::string& name, const std::string& pattern) {
-  // Greedy with one place to come back to: the last star, which then takes one character more.
-  std::size_t n = 0, p = 0, star = std::string::npos, star_takes_to = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      star_takes_to = n;
-    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p;
-      ++n;
-    } else if (star != std::string::npos) {
-      p = star + 1;
-      n = ++star_takes_to;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
 
 static std::vector<std::string> patch_names(const Model& model) {
   std::vector<std::string> names;

@@ -8,9 +8,6 @@
 
 namespace delfront {
 
-/// @brief Does a name match a pattern with * (any text) and ? (any one character)?
-bool matches_pattern(const std::string& name, const std::string& pattern);
-
 /// @brief Give the model's patches the names and kinds that [boundaries.NAME] asks for.
 ///
 /// Patches that one boundary selects become one patch of its name; patches that nobody selects stay. Where two

@@ -10,6 +10,7 @@
 #include "pipeline/prepare.hpp"
 #include "pipeline/size_survey.hpp"
 #include "sizing/asked_sizes.hpp"
+#include "volume/front.hpp"
 #include "volume/refine.hpp"
 #include "volume/to_mesh.hpp"
 
@@ -33,7 +34,10 @@ Outcome generate(Model model, const Options& options, Context& context, std::sha
   Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
   refuse_too_many_cells(prepared, options.size, context);
   auto [grid, size] = std::move(prepared);
-  report.refine = refine_complex(grid.complex, *size, options.volume, context);
+  const bool is_front = options.volume.method == "front";
+  if (is_front) report.front = fill_by_front(grid, *size, context);
+  if (!is_front || !report.front.gave_up.empty())
+    report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();
   if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
   if (!options.output.sizes) size.reset();

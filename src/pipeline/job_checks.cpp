@@ -47,18 +47,6 @@ void try_gates(const std::string& gates) {
   failed_gates(measure_quality(cell, quiet), gates);
 }
 
-/// Runs `check`; what it says against the value of `key` gets the place where that was set.
-template <class Check>
-void check_key(const Options& options, const std::string& key, const Check& check) {
-  try {
-    check();
-  } catch (const UsageError& e) {
-    throw usage_error(options, key, e.what());
-  } catch (const IoError& e) {
-    throw IoError(place_of_key(options, key) + e.what());
-  }
-}
-
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;
   const bool is_device = fs::exists(a, ignored) && !fs::is_regular_file(a, ignored) && !fs::is_directory(a, ignored);
@@ -112,11 +100,11 @@ void check_domain(const Options& options) {
 
 void check_files(const Options& options) {
   for (std::size_t i = 0; i < options.input.files.size(); ++i)
-    check_key(options, fmt::format("input.files[{}]", i), [&] { format_of(options.input.files[i]); });
+    with_place(options, fmt::format("input.files[{}]", i), [&] { format_of(options.input.files[i]); });
   if (writes_grid(options) && !options.output.format.empty())
-    check_key(options, "output.format", [&] { format_of("", options.output.format, true); });
+    with_place(options, "output.format", [&] { format_of("", options.output.format, true); });
   for (std::size_t i = 0; writes_grid(options) && i < options.output.files.size(); ++i)
-    check_key(options, fmt::format("output.files[{}]", i), [&] {
+    with_place(options, fmt::format("output.files[{}]", i), [&] {
       const std::string& path = options.output.files[i];
       format_of(path, options.output.format, true);
       check_holds_cells(options, path);
@@ -124,7 +112,7 @@ void check_files(const Options& options) {
     });
   for (const auto& [key, path] :
        {std::pair{"output.report", options.output.report}, {"output.defects", options.output.defects}})
-    if (!path.empty()) check_key(options, key, [&path = path] { check_writable(path); });
+    if (!path.empty()) with_place(options, key, [&path = path] { check_writable(path); });
   check_files_differ(options);
 }
 
@@ -169,7 +157,7 @@ void check_job(const Options& options) {
   check_sizes(options);
   if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
     throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
-  check_key(options, "output.require", [&] { try_gates(options.output.require); });
+  with_place(options, "output.require", [&] { try_gates(options.output.require); });
   check_files(options);
 }
 
@@ -178,9 +166,9 @@ static void resolve_entries(Options& options, const LengthScale& scale) {
   const auto resolve = [&](const std::string& entry, const char* name, auto& length) {
     const std::string key = fmt::format("{}.{}", entry, name);
     if constexpr (std::is_same_v<std::decay_t<decltype(length)>, Length>)
-      check_key(options, key, [&] { length = Length{resolve_length(length, scale), ""}; });
+      with_place(options, key, [&] { length = Length{resolve_length(length, scale), ""}; });
     else if (length)
-      check_key(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
+      with_place(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
   };
   for (std::size_t i = 0; i < options.size.sources.size(); ++i) {
     const std::string entry = fmt::format("size.source[{}]", i);
@@ -201,7 +189,7 @@ static void resolve_entries(Options& options, const LengthScale& scale) {
 
 void resolve_lengths(Options& options, const LengthScale& scale) {
   const auto resolve = [&](const char* key, auto& length) {
-    if (length) check_key(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
+    if (length) with_place(options, key, [&] { length = Length{resolve_length(*length, scale), ""}; });
   };
   resolve("size.hmin", options.size.hmin);
   resolve("size.hmax", options.size.hmax);
@@ -212,7 +200,7 @@ void resolve_lengths(Options& options, const LengthScale& scale) {
   resolve_entries(options, scale);
   EncloseOptions& enclose = options.domain.enclose;
   if (enclose.size.value > 0)
-    check_key(options, "domain.enclose.size", [&] { enclose.size = {resolve_length(enclose.size, scale), ""}; });
+    with_place(options, "domain.enclose.size", [&] { enclose.size = {resolve_length(enclose.size, scale), ""}; });
   if (options.size.hmin && options.size.hmax && options.size.hmin->value > options.size.hmax->value) {
     const std::string other = place_of_key(options, "size.hmax");
     throw usage_error(

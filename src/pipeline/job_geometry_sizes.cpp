@@ -20,27 +20,23 @@ void report_sources(const GeometrySources& found, const std::string& key, Contex
                                           r.num_at_hmin ? fmt::format(", {} of them at hmin", r.num_at_hmin) : ""));
 }
 
-/// Finds sources; what a key is refused for gets its place.
 template <class Find>
-void add_found(const Options& options, const std::string& key, std::vector<SizeSource>& sources, Context& context,
+void add_found(const Options& options, const std::string& key, GeometrySources& all, Context& context,
                const Find& find) {
-  try {
-    GeometrySources found = find();
-    report_sources(found, key, context);
-    sources.insert(sources.end(), std::make_move_iterator(found.sources.begin()),
-                   std::make_move_iterator(found.sources.end()));
-  } catch (const UsageError& e) {
-    throw usage_error(options, key, e.what());
-  }
+  GeometrySources found = with_place(options, key, find);
+  report_sources(found, key, context);
+  all.append(std::move(found));
 }
 
-CurvatureSizes curvature_wish(const SizeOptions& size) {
+CurvatureSizes curvature_wish(const SizeOptions& size, const Model& model) {
   CurvatureSizes wish;
   if (size.curvature > 0) wish.cells_per_turn = size.curvature;
   if (size.angle > 0) wish.angle_deg = size.angle;
   if (size.deviation) wish.deviation = size.deviation->value;
-  if (size.automatic && !wish.cells_per_turn && !wish.angle_deg && !wish.deviation)
+  if (size.automatic && !wish.cells_per_turn && !wish.angle_deg && !wish.deviation) {
     wish.cells_per_turn = AutomaticSizes().cells_per_turn;
+    wish.hmin = usual_hmin(model);
+  }
   if (size.angle_form == "tangent") wish.form = CurvatureSizes::Form::tangent;
   if (size.hmin) wish.hmin = size.hmin->value;
   return wish;
@@ -80,38 +76,49 @@ void warn_of_coarse_facets(const Model& model, const CurvatureSizes& wish, Conte
   warn(found.deviation, "facets are farther from the surface they stand for than", limits.deviation);
 }
 
-}  // namespace
-
-void add_geometry_sources(const Options& options, const Model& model, const std::function<bool(Point)>& is_kept,
-                          std::vector<SizeSource>& sources, Context& context) {
+/// Curvature, gaps and lines: of many facets, so sources that say nearly the same are merged.
+GeometrySources find_surface_sizes(const Options& options, const Model& model,
+                                   const std::function<bool(Point)>& is_kept, Context& context) {
   const SizeOptions& size = options.size;
-  for (const SizeOnOptions& on : size.on) {
-    const std::string key = "size.on." + toml_key(on.name);
-    if (!on.h) throw usage_error(options, key, "h is missing, the size there");
-    const NamedSize named{on.name, on.h->value};
-    add_found(options, key, sources, context, [&] { return find_named_sizes(model, {&named, 1}, context); });
-  }
-  const CurvatureSizes curvature = curvature_wish(size);
+  const CurvatureSizes curvature = curvature_wish(size, model);
   const bool asks_curvature = curvature.cells_per_turn || curvature.angle_deg || curvature.deviation;
   const bool asks_gap = size.gap.cells > 0 || size.automatic;
   const bool asks_lines = size.proximity.cells > 0 || size.automatic;
-  if (!asks_curvature && !asks_gap && !asks_lines) return;
+  GeometrySources all;
+  if (!asks_curvature && !asks_gap && !asks_lines) return all;
   Model turned = model;  // sides are told by normals
   turned.feature_angle = options.input.feature_angle;
   if (!turned.triangles.empty()) orient_shells(turned, context);
   if (asks_curvature)
-    add_found(options, "size.curvature", sources, context,
+    add_found(options, "size.curvature", all, context,
               [&] { return find_curvature_sizes(turned, curvature, context); });
   if (asks_curvature && !turned.triangles.empty()) warn_of_coarse_facets(turned, curvature, context);
   const AutomaticSizes usual;
   if (asks_gap)
-    add_found(options, "size.gap", sources, context, [&] {
+    add_found(options, "size.gap", all, context, [&] {
       return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells.value(), is_kept), context);
     });
   if (asks_lines)
-    add_found(options, "size.proximity", sources, context, [&] {
+    add_found(options, "size.proximity", all, context, [&] {
       return find_line_gap_sizes(turned, gap_wish(options, size.proximity, usual.line_cells.value()), context);
     });
+  merge_close_sources(all);
+  return all;
+}
+
+}  // namespace
+
+std::vector<SizeSource> geometry_sources(const Options& options, const Model& model,
+                                         const std::function<bool(Point)>& is_kept, Context& context) {
+  GeometrySources found;
+  for (const SizeOnOptions& on : options.size.on) {
+    const std::string key = "size.on." + toml_key(on.name);
+    if (!on.h) throw usage_error(options, key, "h is missing, the size there");
+    const NamedSize named{on.name, on.h->value};
+    add_found(options, key, found, context, [&] { return find_named_sizes(model, {&named, 1}, context); });
+  }
+  found.append(find_surface_sizes(options, model, is_kept, context));
+  return std::move(found.sources);
 }
 
 }  // namespace delfront

@@ -13,11 +13,10 @@
 #include "delfront/io.hpp"
 #include "delfront/size_expression.hpp"
 #include "delfront/solution_metric.hpp"
+#include "pipeline/kept_domain.hpp"
 #include "pipeline/option_table.hpp"
-#include "planar/prepare.hpp"
 #include "sizing/asked_sizes.hpp"
 #include "sizing/size_octree.hpp"
-#include "spatial/bvh.hpp"
 
 namespace delfront {
 
@@ -36,7 +35,9 @@ double hmax_of(const Options& options) {
 FieldPointer build_source_part(const Options& options, const Model& model, double growth,
                                const std::function<bool(Point)>& is_kept, Context& context) {
   std::vector<SizeSource> sources = job_sources(options, context);
-  add_geometry_sources(options, model, is_kept, sources, context);
+  std::vector<SizeSource> of_geometry = geometry_sources(options, model, is_kept, context);
+  sources.insert(sources.end(), std::make_move_iterator(of_geometry.begin()),
+                 std::make_move_iterator(of_geometry.end()));
   if (sources.empty()) return nullptr;
   return build_source_size_field(std::move(sources), {.growth = growth, .time = options.size.time}, context);
 }
@@ -117,26 +118,28 @@ void warn_of_share_outside(const BackgroundField& field, const std::string& file
                     100 * share, file));
 }
 
+bool has_node_field(const Mesh& mesh, const std::string& name) {
+  return std::any_of(mesh.fields.begin(), mesh.fields.end(),
+                     [&](const Field& field) { return field.on == Field::On::vertices && field.name == name; });
+}
+
 FieldPointer build_background_part(const Options& options, const Model& model, const Box& domain, double growth,
                                    Context& context) {
   const BackgroundFileOptions& asked = options.size.background;
   if (asked.file.empty()) return nullptr;
-  try {
+  return with_place(options, "size.background.file", [&]() -> FieldPointer {
     BackgroundGrid grid;
     grid.mesh = read_mesh(asked.file, context);
     grid.name = asked.file;
     grid.metric = asked.metric;
     if (asked.metric.empty()) grid.size = asked.size;
+    if (grid.metric.empty() && grid.size.empty() && has_node_field(grid.mesh, "h")) grid.size = "h";
     std::shared_ptr<const BackgroundField> field =
         build_background_size_field(grid, {.factor = asked.factor, .growth = growth}, context);
     field->require_overlap(domain);
     warn_of_share_outside(*field, asked.file, model, context);
     return field;
-  } catch (const UsageError& e) {
-    throw usage_error(options, "size.background.file", e.what());
-  } catch (const InputError& e) {
-    throw InputError(place_of_key(options, "size.background.file") + e.what(), e.places);
-  }
+  });
 }
 
 FieldPointer build_solution_part(const Options& options, const Box& domain, Context& context) {
@@ -153,16 +156,12 @@ FieldPointer build_solution_part(const Options& options, const Box& domain, Cont
   wish.hmax = hmax_of(options);
   if (asked.stretched) wish.hgrad = asked.hgrad;
   const double growth = std::min(asked.hgrad, options.size.growth.value_or(asked.hgrad));
-  try {
+  return with_place(options, "size.solution.file", [&]() -> FieldPointer {
     const BackgroundGrid grid = background_from_solution(read_mesh(asked.file, context), asked.file, wish, context);
     std::shared_ptr<const BackgroundField> field = build_background_size_field(grid, {.growth = growth}, context);
     field->require_overlap(domain);
     return field;
-  } catch (const UsageError& e) {
-    throw usage_error(options, "size.solution.file", e.what());
-  } catch (const InputError& e) {
-    throw InputError(place_of_key(options, "size.solution.file") + e.what(), e.places);
-  }
+  });
 }
 
 /// The field at the nodes of a grid that is refined to it (S8): points are those of an octree as fine as cells would
@@ -234,28 +233,8 @@ std::function<bool(Point)> kept_part(PlanarDomain domain, CurveId far_field, con
   Options coarse;  // the lines as they are tell
   coarse.domain = options.domain;
   coarse.planar.boundary = "keep";
-  const PlanarPrepared prepared = prepare_planar(domain, coarse, nullptr, context);
-  const TriComplex& c = prepared.grid.complex;
-  std::vector<std::array<Point, 3>> kept;
-  for (TriIndex t = 0; t < c.tri.size(); ++t) {
-    if (c.is_ghost(t) || c.is_dead(t) || c.tri[t].region == kOutside) continue;
-    const auto corner = [&](int k) {
-      const Point2 p = c.point[c.tri[t].node[k]];
-      return Point{p.x, p.y, 0};
-    };
-    kept.push_back({corner(0), corner(1), corner(2)});
-  }
-  return [tree = std::make_shared<const TriangleTree>(std::move(kept))](Point at) {
-    bool is_in = false;
-    Box place;
-    place.add(at);
-    tree->bvh().for_each_overlap(place, [&](std::uint32_t t) {
-      const auto& [a, b, d] = tree->corners(t);
-      const auto is_left = [&](Point p, Point q) { return (q.x - p.x) * (at.y - p.y) >= (q.y - p.y) * (at.x - p.x); };
-      is_in = is_in || (is_left(a, b) && is_left(b, d) && is_left(d, a));
-    });
-    return is_in;
-  };
+  const auto kept = std::make_shared<const KeptDomain>(prepare_planar(domain, coarse, nullptr, context));
+  return [kept](Point at) { return kept->is_inside(at); };
 }
 
 }  // namespace delfront

@@ -18,8 +18,8 @@ std::vector<SizeSource> job_sources(const Options& options, Context& context);
 /// S11).
 /// @throws UsageError  with the place of the key
 /// @param is_kept  as GapSizes::is_kept
-void add_geometry_sources(const Options& options, const Model& model, const std::function<bool(Point)>& is_kept,
-                          std::vector<SizeSource>& sources, Context& context);
+std::vector<SizeSource> geometry_sources(const Options& options, const Model& model,
+                                         const std::function<bool(Point)>& is_kept, Context& context);
 
 /// @brief The curves and points of a planar domain as a model, for sizes on names, from curvature and gaps.
 Model model_of(const PlanarDomain& domain);

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
 #include "delfront/model.hpp"
-#include "pipeline/boundaries.hpp"
 #include "pipeline/job_sizes.hpp"
 #include "pipeline/option_table.hpp"
 
@@ -118,7 +118,7 @@ void refuse_other_keys(const SizeBoxOptions& box) {
 
 SourceShape shape_of(const SizeBoxOptions& box, Context& context) {
   refuse_other_keys(box);
-  if (box.shape == "sphere") return Ball{need(box.centre, "centre", box), need(box.radius, "radius", box).value};
+  if (box.shape == "sphere") return SolidSphere{need(box.centre, "centre", box), need(box.radius, "radius", box).value};
   if (box.shape == "cylinder" || box.shape == "cone") {
     const double radius = need(box.radius, "radius", box).value;
     return Frustum{need(box.from, "from", box), need(box.to, "to", box), radius,
@@ -139,18 +139,6 @@ SizeSource source_of(const SizeBoxOptions& box, Context& context) {
   made.shape = shape_of(box, context);
   check_shape(made.shape);
   return made;
-}
-
-/// What an entry is refused for, with its place in the job file.
-template <class Convert>
-void convert_entry(const Options& options, const std::string& key, const Convert& convert) {
-  try {
-    convert();
-  } catch (const UsageError& e) {
-    throw usage_error(options, key, e.what());
-  } catch (const InputError& e) {
-    throw InputError(fmt::format("{}{}: {}", place_of_key(options, key), key, e.what()), e.places);
-  }
 }
 
 bool is_left_out(const SizeOptions& options, const std::string& group) {
@@ -178,11 +166,11 @@ std::vector<SizeSource> job_sources(const Options& options, Context& context) {
   for (std::size_t i = 0; i < options.size.sources.size(); ++i) {
     const SourceOptions& source = options.size.sources[i];
     if (is_left_out(options.size, source.group)) continue;
-    convert_entry(options, fmt::format("size.source[{}]", i), [&] { add_source(source, sources, context); });
+    with_place(options, fmt::format("size.source[{}]", i), [&] { add_source(source, sources, context); });
   }
   for (std::size_t i = 0; i < options.size.boxes.size(); ++i)
-    convert_entry(options, fmt::format("size.box[{}]", i),
-                  [&] { sources.push_back(source_of(options.size.boxes[i], context)); });
+    with_place(options, fmt::format("size.box[{}]", i),
+               [&] { sources.push_back(source_of(options.size.boxes[i], context)); });
   return sources;
 }
 

@@ -177,12 +177,12 @@ std::vector<OptionRow> build_table() {
       "planar.method", "", "",
       "how the plane is gridded: by an advancing front; by the points of a front, connected by Delaunay; or by "
       "Delaunay with points at the centres of circles",
-      [](auto& o) -> auto& { return o.planar.method; }, {"front", "front-delaunay", "delaunay"}));
+      [](auto& o) -> auto& { return o.planar.method; }, {"front-delaunay", "front", "delaunay"}));
   add(number_row(
       "planar.min_angle", "", "", "grids in the plane: smallest angle to work towards", "degrees from 0 to 40", 0, 40,
       [](auto& o) -> auto& { return o.planar.min_angle; }));
   add(text_row("volume.method", "", "", "how the volume is gridded; none: the surface only",
-               [](auto& o) -> auto& { return o.volume.method; }, {"delaunay", "none"}));
+               [](auto& o) -> auto& { return o.volume.method; }, {"front-delaunay", "front", "delaunay", "none"}));
   add(boolean_row(
       "volume.core", "a regular lattice in the middle, where sizes are largest and the boundary is far",
       [](auto& o) -> auto& { return o.volume.core; }));

@@ -91,6 +91,20 @@ std::string place_of_key(const Options& options, const std::string& key);
 /// @brief For what shows only when all options are known: where the key was set, the key, the message.
 UsageError usage_error(const Options& options, const std::string& key, const std::string& message);
 
+/// @brief Does some work; what it is refused for is said with the key and the place where that was set.
+template <class Work>
+auto with_place(const Options& options, const std::string& key, const Work& work) {
+  try {
+    return work();
+  } catch (const UsageError& e) {
+    throw usage_error(options, key, e.what());
+  } catch (const InputError& e) {
+    throw InputError(usage_error(options, key, e.what()).what(), e.places);
+  } catch (const IoError& e) {
+    throw IoError(place_of_key(options, key) + e.what());
+  }
+}
+
 /// @return all effective options as the job file's tree; what is not set is left out
 JobValue option_tree(const Options& options);
 

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "base/nearest_name.hpp"
 #include "delfront/errors.hpp"
@@ -91,9 +93,14 @@ void note_place(Options& options, const std::string& key, const JobValue& value,
     options.set_at[fmt::format("{}[{}]", key, i)] = place_of(where(value.items[i].line));
 }
 
+/// Whether a path goes into a list: "size.source[2]", "size.source[2].h".
+bool is_listed(const EntryTable& table, const std::string& path) {
+  return table.is_list && path.starts_with(table.key + "[");
+}
+
 const EntryTable* find_entry_table(const std::string& path) {
   for (const EntryTable& table : entry_tables())
-    if (path == table.key || path.starts_with(table.key + ".")) return &table;
+    if (path == table.key || path.starts_with(table.key + ".") || is_listed(table, path)) return &table;
   return nullptr;
 }
 
@@ -140,15 +147,50 @@ void apply_entry(const EntryTable& table, Options& options, const std::string& n
     apply_to_entry(table, options, entry, value.names[i], value.items[i], where);
 }
 
+struct ListedKey {
+  std::size_t entry;
+  std::string name;  ///< empty: the entry itself
+};
+
+/// "size.source[2].h" taken apart; entries are those that there are.
+ListedKey listed_key(const EntryTable& table, const Options& options, const std::string& path,
+                     const std::string& prefix) {
+  const std::string_view rest = std::string_view(path).substr(table.key.size() + 1);
+  std::size_t entry = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), entry);
+  const std::string_view after = rest.substr(static_cast<std::size_t>(end - rest.data()));
+  if (error != std::errc() || !(after == "]" || (after.starts_with("].") && after.size() > 2)))
+    throw UsageError(
+        fmt::format("{}{}: expected {}[0].KEY, a key of an entry, the first of which is 0", prefix, path, table.key));
+  const std::size_t count = table.count(options);
+  if (entry >= count)
+    throw UsageError(fmt::format("{}{}: {}", prefix, path,
+                                 count == 0 ? fmt::format("there are no entries of {} yet", table.key)
+                                            : fmt::format("the last entry is {}[{}]", table.key, count - 1)));
+  return {entry, std::string(after.substr(std::min<std::size_t>(2, after.size())))};
+}
+
+/// Keys of one entry of a list, the others stay.
+void apply_listed(const EntryTable& table, Options& options, const std::string& path, const JobValue& value,
+                  const Where& where) {
+  const ListedKey key = listed_key(table, options, path, where(value.line));
+  if (!key.name.empty()) return apply_to_entry(table, options, key.entry, key.name, value, where);
+  need_table(path, value, names_in(table), where);
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    apply_to_entry(table, options, key.entry, value.names[i], value.items[i], where);
+}
+
 /// A list of tables, which replaces what was there; one table is a list of one.
 void apply_list(const EntryTable& table, Options& options, const std::string& path, const JobValue& value,
                 const Where& where) {
+  if (is_listed(table, path)) return apply_listed(table, options, path, value, where);
   const bool is_list = value.is(JobValue::Kind::list);
   if (path != table.key || (!is_list && !value.is(JobValue::Kind::table)))
     throw UsageError(fmt::format("{}{}: expected a list of tables with {}, [[{}]] in a job file; got {}",
                                  where(value.line), path, fmt::join(names_in(table), ", "), table.key,
                                  describe(value)));
   table.clear(options);
+  std::erase_if(options.set_at, [&](const auto& set) { return is_listed(table, set.first); });
   if (!is_list) return apply_entry(table, options, "", value, where);
   for (const JobValue& item : value.items) apply_entry(table, options, "", item, where);
 }
@@ -218,11 +260,18 @@ UsageError usage_error(const Options& options, const std::string& key, const std
   return UsageError(fmt::format("{}{}: {}", place, key, message));
 }
 
+/// What the last word of a path takes, as a key of an entry.
+static Takes takes_in(const EntryTable& table, const std::string& path) {
+  for (const EntryRow& row : table.rows)
+    if (path.ends_with("." + row.name)) return row.takes;
+  return Takes::text;
+}
+
 void set_option(Options& options, const std::string& key, const std::string& value) {
   Takes takes = Takes::number;  // of what is no single option: tables, lists
   const std::string entry = main_entry(key);
   if (const OptionRow* row = find_row(entry.empty() ? key : full_key(key, entry))) takes = row->takes;
-  if (find_entry_table(key)) takes = Takes::text;
+  if (const EntryTable* table = find_entry_table(key)) takes = takes_in(*table, key);
   apply_value(options, key, value_from_text(takes, value), [](int) { return std::string(); });
 }
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <vector>
 
 #include "delfront/errors.hpp"
 #include "sizing/asked_sizes.hpp"
@@ -12,8 +12,6 @@
 namespace delfront {
 
 namespace {
-
-constexpr double kMuchLonger = 1.5;  ///< edges of the surface than the largest size
 
 /// Turned and looked at; what cannot bound a volume goes no further.
 SurfaceReport prepare_surface(Model& model, Context& context) {
@@ -63,35 +61,19 @@ std::shared_ptr<const SizeField> build_size_field(const TetComplex& complex, con
 /// Surfaces are kept as they are given, whatever sizes are asked for: flat cells stand where the two do not fit.
 /// @param asked  null: hmax alone
 void warn_of_coarse_surface(const Model& model, const SizeOptions& options, const SizeField* asked, Context& context) {
-  if (!options.hmax && !asked) return;
-  std::vector<Point> middles;
-  std::vector<double> lengths;
+  std::vector<std::array<Point, 2>> edges;
   for (const std::array<VertexId, 3>& triangle : model.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexId v = triangle[k], w = triangle[(k + 1) % 3];
-      if (w.index() < v.index()) continue;  // its other triangle has it too
-      middles.push_back(0.5 * (model.points[v] + model.points[w]));
-      lengths.push_back(distance(model.points[v], model.points[w]));
+      if (v.index() < w.index()) edges.push_back({model.points[v], model.points[w]});  // its other triangle has it too
     }
-  const double hmin = options.hmin ? options.hmin->value : 0;
-  std::vector<double> sizes(middles.size(), options.hmax ? options.hmax->value : HUGE_VAL);
-  if (asked) asked->lower_sizes(middles, sizes);
-  std::size_t num_long = 0, worst = 0;
-  double worst_ratio = kMuchLonger;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const double ratio = lengths[i] / std::max(sizes[i], hmin);
-    num_long += ratio > kMuchLonger;
-    if (ratio <= worst_ratio) continue;
-    worst_ratio = ratio;
-    worst = i;
-  }
-  if (num_long == 0) return;
-  const Point at = middles[worst];
+  const LongEdges found = find_long_edges(edges, options, asked, context);
+  if (found.count == 0) return;
   context.warn(fmt::format(
       "{} edges of the surface are longer than the sizes asked for there, the worst {:g} where {:g} is asked "
       "for (at {:g} {:g} {:g}): the surface is kept as given, cells along it may be flat; give it finer "
       "triangles there",
-      num_long, lengths[worst], std::max(sizes[worst], hmin), at.x, at.y, at.z));
+      found.count, found.length, found.size, found.at.x, found.at.y, found.at.z));
 }
 
 /// The field's size at every vertex, so that all sizes keep the growth. Vertices that the grid does not use are not

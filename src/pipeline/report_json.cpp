@@ -121,11 +121,20 @@ Json to_json(const RefineReport& r) {
 Json to_json(const FrontReport& r) {
   return {{"sides_processed", r.sides_processed},
           {"triangles", r.triangles},
-          {"points", r.points},
-          {"sweeps", r.sweeps},
-          {"cavities", r.cavities},
           {"closed_by_delaunay", r.closed_by_delaunay},
-          {"crossing_share", number(r.crossing_share)}};
+          {"faces_processed", r.faces_processed},
+          {"tets", r.tets},
+          {"points", r.points},
+          {"rounds", r.rounds},
+          {"sweeps", r.sweeps},
+          {"faces_left", r.faces_left},
+          {"cavities", r.cavities},
+          {"tets_emptied", r.tets_emptied},
+          {"tets_refilled", r.tets_refilled},
+          {"cavities_left", r.cavities_left},
+          {"tets_of_cavities", r.tets_of_cavities},
+          {"crossing_share", number(r.crossing_share)},
+          {"gave_up", r.gave_up}};
 }
 
 Json to_json(const ImproveReport& r) {

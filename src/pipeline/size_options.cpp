@@ -100,7 +100,8 @@ void add_grid_rows(std::vector<OptionRow>& t) {
       "size.background.file", "--background", "FILE", "grid whose nodes hold sizes: VTU, MSH, POS, medit mesh and sol",
       [](auto& o) -> auto& { return o.size.background.file; }));
   t.push_back(text_row(
-      "size.background.size", "", "", "its field of sizes", [](auto& o) -> auto& { return o.size.background.size; }));
+      "size.background.size", "", "", "its field of sizes; by default h, or the only field there is",
+      [](auto& o) -> auto& { return o.size.background.size; }));
   t.push_back(text_row(
       "size.background.metric", "", "", "its field of metrics, instead",
       [](auto& o) -> auto& { return o.size.background.metric; }));

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/parallel.hpp"
 #include "delfront/errors.hpp"
@@ -101,33 +100,6 @@ class Integral {
   const double finest_;
 };
 
-/// Twice the area of a, b, p, seen along x; exactly the negative for b, a, p.
-double side_of(Point p, Point a, Point b) {
-  if (std::pair(b.y, b.z) < std::pair(a.y, a.z)) return -side_of(p, b, a);
-  return (b.y - a.y) * (p.z - a.z) - (b.z - a.z) * (p.y - a.y);
-}
-
-/// Whether p is left of a, b, seen along x. On the line it is taken as a little further along z, then along y: a ray
-/// through an edge meets one of the edge's two triangles then (grids of even squares have most of their edges there).
-bool is_left(Point p, Point a, Point b) {
-  const double side = side_of(p, a, b);
-  return side != 0 ? side > 0 : b.y != a.y ? b.y > a.y : b.z < a.z;
-}
-
-/// Whether the ray from p along x meets a triangle, seen along x.
-bool is_before(Point p, const std::array<Point, 3>& t) {
-  const bool left = is_left(p, t[0], t[1]);
-  if (left != is_left(p, t[1], t[2]) || left != is_left(p, t[2], t[0])) return false;
-  const double side[3] = {side_of(p, t[0], t[1]), side_of(p, t[1], t[2]), side_of(p, t[2], t[0])};
-  const double whole = side[0] + side[1] + side[2];
-  return whole != 0 && (side[1] * t[0].x + side[2] * t[1].x + side[0] * t[2].x) / whole > p.x;
-}
-
-bool is_before_segment(Point p, Point a, Point b) {
-  if ((a.y > p.y) == (b.y > p.y)) return false;
-  return a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) > p.x;
-}
-
 /// Cells are surely no more than this.
 double most_cells(const Box& box, double least, bool is_planar) {
   const double measure = measure_of(box, is_planar);
@@ -135,56 +107,6 @@ double most_cells(const Box& box, double least, bool is_planar) {
 }
 
 }  // namespace
-
-KeptDomain::KeptDomain(const Prepared& prepared) {
-  const TetComplex& c = prepared.grid.complex;
-  for (TetIndex t = 0; t < c.num_slots(); ++t) {
-    if (c.is_dead(t) || c.is_ghost(t)) continue;
-    for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
-      if (!c.is_ghost(c.neigh[ref] >> 2)) continue;
-      const auto n = c.face_nodes(ref);
-      border_.push_back({c.point(n[0]), c.point(n[1]), c.point(n[2])});
-    }
-  }
-  build();
-}
-
-KeptDomain::KeptDomain(const PlanarPrepared& prepared) : is_planar_(true) {
-  const TriComplex& c = prepared.grid.complex;
-  for (const PlanarPiece& piece : prepared.grid.pieces) {
-    const EdgeRef ref = c.find_edge(piece.a, piece.b);
-    if ((c.tri[ref >> 2].region == kOutside) == (c.tri[c.across(ref) >> 2].region == kOutside)) continue;
-    const Point2 a = c.point[piece.a], b = c.point[piece.b];
-    border_.push_back({Point{a.x, a.y, 0}, Point{b.x, b.y, 0}, Point{b.x, b.y, 0}});
-  }
-  build();
-}
-
-void KeptDomain::build() {
-  std::vector<Box> boxes;
-  for (const std::array<Point, 3>& simplex : border_) {
-    Box& box = boxes.emplace_back();
-    for (const Point& p : simplex) box.add(p);
-    box_.add(box);
-  }
-  tree_ = Bvh(boxes);
-}
-
-bool KeptDomain::is_crossed(const Box& box) const {
-  bool found = false;
-  tree_.for_each_overlap(box, [&](std::uint32_t) { found = true; });
-  return found;
-}
-
-bool KeptDomain::is_inside(Point p) const {
-  if (!box_.overlaps({p, p})) return false;
-  bool inside = false;
-  tree_.for_each_overlap({p, {box_.high.x, p.y, p.z}}, [&](std::uint32_t i) {
-    const std::array<Point, 3>& s = border_[i];
-    inside ^= is_planar_ ? is_before_segment(p, s[0], s[1]) : is_before(p, s);
-  });
-  return inside;
-}
 
 Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double growth, Context& context,
                        std::size_t max_leaves) {

@@ -1,39 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
-#include <vector>
 
 #include "delfront/context.hpp"
 #include "delfront/job.hpp"
 #include "delfront/mesh.hpp"
 #include "delfront/size_field.hpp"
+#include "pipeline/kept_domain.hpp"
 #include "pipeline/prepare.hpp"
-#include "planar/prepare.hpp"
-#include "spatial/bvh.hpp"
 
 namespace delfront {
-
-/// @brief Where the kept regions are: inside where a ray meets their border an odd number of times. In rounded
-/// arithmetic: for sums and pictures.
-class KeptDomain {
- public:
-  explicit KeptDomain(const Prepared& prepared);
-  explicit KeptDomain(const PlanarPrepared& prepared);
-
-  bool is_planar() const { return is_planar_; }
-  const Box& box() const { return box_; }
-  std::size_t num_border() const { return border_.size(); }  ///< triangles of the border; in the plane segments
-  bool is_crossed(const Box& box) const;
-  bool is_inside(Point p) const;
-
- private:
-  void build();
-
-  std::vector<std::array<Point, 3>> border_;  ///< triangles; in the plane segments, the third point repeats the second
-  Bvh tree_;
-  Box box_;
-  bool is_planar_ = false;
-};
 
 /// @brief Cells, points, memory and time that a grid of these sizes will take.
 /// @par Source  cells of side h in a volume V: 6 sqrt(2) V / h^3 regular tetrahedra; in the plane 4 / sqrt(3) A / h^2

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "planar/front.hpp"
 #include "planar/improve.hpp"
@@ -19,7 +21,6 @@ namespace delfront {
 
 namespace {
 
-constexpr double kMuchLonger = 1.5;   ///< segments than the size asked for
 constexpr double kHigherGoal = 1.1;   ///< angles worked for after a front, of those asked for
 constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates want
 
@@ -116,27 +117,20 @@ void set_vertex_sizes(TriComplex& complex, const SizeField& field, const Context
 }
 
 /// A boundary that is kept has its points and no others, whatever sizes are asked for.
-void warn_of_long_segments(PlanarGrid& grid, const SizeField& asked) {
-  std::vector<Point> middles;
-  std::vector<double> lengths;
+void warn_of_long_segments(PlanarGrid& grid, const SizeOptions& options, const SizeField* asked,
+                           const Context& context) {
+  std::vector<std::array<Point, 2>> segments;
   for (const PlanarPiece& piece : grid.pieces) {
     const Point2 a = grid.complex.point[piece.a], b = grid.complex.point[piece.b];
-    middles.push_back({0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0});
-    lengths.push_back(std::hypot(b.x - a.x, b.y - a.y));
+    segments.push_back({Point{a.x, a.y, 0}, Point{b.x, b.y, 0}});
   }
-  std::vector<double> sizes(middles.size());
-  asked.sizes(middles, sizes);
-  std::size_t num_long = 0, worst = 0;
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    num_long += lengths[i] > kMuchLonger * sizes[i];
-    if (lengths[i] / sizes[i] > lengths[worst] / sizes[worst]) worst = i;
-  }
-  if (num_long > 0)
+  const LongEdges found = find_long_edges(segments, options, asked, context);
+  if (found.count > 0)
     grid.warnings.push_back(
         fmt::format("{} segments of the boundary are longer than the sizes asked for there, the "
                     "worst {:g} where {:g} is asked for (at {:g} {:g}): the boundary is kept as "
                     "given; --boundary split divides it",
-                    num_long, lengths[worst], sizes[worst], middles[worst].x, middles[worst].y));
+                    found.count, found.length, found.size, found.at.x, found.at.y));
 }
 
 /// Only the front makes stretched triangles; the other methods use the least size over all directions.
@@ -215,7 +209,7 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
     // Short pieces across the direction of long triangles must not bound sizes along it.
     if (!in_metric) prepared.size = build_size_field(grid, options.size, largest, asked, context);
   }
-  if (options.planar.boundary == "keep" && asked) warn_of_long_segments(grid, *asked);
+  if (options.planar.boundary == "keep") warn_of_long_segments(grid, options.size, asked.get(), context);
   set_vertex_sizes(grid.complex, *prepared.size, context);
   return prepared;
 }

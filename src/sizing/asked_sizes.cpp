@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 namespace delfront {
 
@@ -25,6 +26,31 @@ std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const 
   else if (!options.growth && !has_field_everywhere(options))
     boundary.hmax = std::max(largest, boundary.hmin);
   return build_boundary_size_field(boundary, context);
+}
+
+LongEdges find_long_edges(std::span<const std::array<Point, 2>> edges, const SizeOptions& options,
+                          const SizeField* asked, const Context& context) {
+  constexpr double kMuchLonger = 1.5;
+  LongEdges found;
+  if (!options.hmax && !asked) return found;
+  std::vector<Point> middles;
+  for (const auto& [a, b] : edges) middles.push_back(0.5 * (a + b));
+  std::vector<double> sizes(edges.size(), std::numeric_limits<double>::infinity());
+  if (asked) evaluate_sizes(*asked, middles, sizes, context);
+  double worst = kMuchLonger;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    double size = options.hmax ? std::min(sizes[i], options.hmax->value) : sizes[i];
+    if (options.hmin) size = std::max(size, options.hmin->value);
+    const double length = distance(edges[i][0], edges[i][1]);
+    if (!(length > kMuchLonger * size)) continue;
+    ++found.count;
+    if (!(length / size > worst)) continue;
+    worst = length / size;
+    found.length = length;
+    found.size = size;
+    found.at = middles[i];
+  }
+  return found;
 }
 
 void add_size_field(Mesh& mesh, const SizeField& size, const Context& context) {

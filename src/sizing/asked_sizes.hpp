@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstddef>
 #include <memory>
+#include <span>
 
 #include "delfront/mesh.hpp"
 #include "delfront/options.hpp"
@@ -26,6 +29,17 @@ bool has_field_everywhere(const SizeOptions& options);
 /// @param largest   of the boundary as it was given
 std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,
                                                   Context& context);
+
+/// @brief Edges of a boundary that is kept and that are much longer than the sizes asked for there.
+struct LongEdges {
+  std::size_t count = 0;
+  double length = 0, size = 0;  ///< of the worst
+  Point at;                     ///< its middle
+};
+
+/// @param asked  null: options.hmax alone
+LongEdges find_long_edges(std::span<const std::array<Point, 2>> edges, const SizeOptions& options,
+                          const SizeField* asked, const Context& context);
 
 /// @brief The wanted sizes at the points of a grid, as its field "h".
 void add_size_field(Mesh& mesh, const SizeField& size, const Context& context);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances to sets of simplices through the tree of their boxes. Each point is asked for alone, without the answer of
-// the one before, so that the last bit does not depend on the batch.
+// Distances to sets of simplices through the tree of their boxes. What was nearest to the point before bounds the
+// search for the next, by more than rounding: what is left out would have been passed over anyway, so that the last bit
+// does not depend on the batch.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/nearest_name.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/size_expression.hpp"
 #include "fmt/format.h"
+#include "sizing/model_names.hpp"
 #include "spatial/bvh.hpp"
 
 namespace delfront {
@@ -49,48 +50,49 @@ class TreeDistanceField final : public DistanceField {
   }
 
   void distances(std::span<const Point> at, std::span<double> distance) const override {
-    for (std::size_t i = 0; i < at.size(); ++i) distance[i] = one(at[i]);
+    std::uint32_t near = 0;
+    for (std::size_t i = 0; i < at.size(); ++i) distance[i] = one(at[i], near);
   }
 
   Range range(const Box& box) const override {
     const Point centre = box.low + 0.5 * (box.high - box.low);
     if (!is_finite(centre)) return {0, std::numeric_limits<double>::infinity()};
-    const double middle = one(centre), half = 0.5 * box.diagonal();
-    Box all = bvh_.box_of_all();
-    all.add(box);
-    double largest = 0;
-    for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(all.low[k]), std::abs(all.high[k])});
-    const double error = kRelativeError * all.diagonal() + 32 * std::numeric_limits<double>::epsilon() * largest;
+    std::uint32_t near = 0;
+    const double middle = one(centre, near), half = 0.5 * box.diagonal();
+    const double error = error_from(box);
     return {std::max(0.0, middle - half - error), middle + half + error};
   }
 
  private:
-  double one(Point p) const {
+  /// @param near  where to begin; becomes what is nearest
+  double one(Point p, std::uint32_t& near) const {
     if (!is_finite(p)) return std::numeric_limits<double>::quiet_NaN();
-    return std::sqrt(
-        bvh_.nearest(p, [&](std::uint32_t i) { return squared_distance_to(p, corners_[i]); }).squared_distance);
+    const auto distance_to = [&](std::uint32_t i) { return squared_distance_to(p, corners_[i]); };
+    const double reach = std::sqrt(distance_to(near)) + 2 * error_from({p, p});
+    const double limit = std::isnan(reach) ? std::numeric_limits<double>::infinity() : reach * reach;
+    const Bvh::Nearest found = bvh_.nearest(p, distance_to, limit);
+    if (found.found()) near = found.item;
+    return std::sqrt(found.squared_distance);
+  }
+
+  /// Of distances from places in the box.
+  double error_from(const Box& box) const {
+    Box all = bvh_.box_of_all();
+    all.add(box);
+    double largest = 0;
+    for (int k = 0; k < 3; ++k) largest = std::max({largest, std::abs(all.low[k]), std::abs(all.high[k])});
+    return kRelativeError * all.diagonal() + 32 * std::numeric_limits<double>::epsilon() * largest;
   }
 
   std::vector<std::array<Point, 3>> corners_;
   Bvh bvh_;
 };
 
-std::vector<std::string> names_of(const Model& model) {
-  std::vector<std::string> names;
-  for (const Patch& patch : model.patches) names.push_back(patch.name);
-  for (const Curve& curve : model.curves) names.push_back(curve.name);
-  for (const std::string& corner : model.corner_names) names.push_back(corner);
-  for (const Region& region : model.regions) names.push_back(region.name);
-  names.erase(std::remove(names.begin(), names.end(), std::string()), names.end());
-  return names;
-}
-
 [[noreturn]] void fail_unknown(const Model& model, const std::string& name) {
-  const std::vector<std::string> known = names_of(model);
-  const std::string near = nearest_name(name, known);
-  throw UsageError(fmt::format("no patch, curve or corner is called '{}'{}; there are: {}", name,
-                               near.empty() ? "" : fmt::format("; did you mean '{}'?", near),
-                               known.empty() ? "none with a name" : fmt::format("{}", fmt::join(known, ", "))));
+  std::vector<std::string> known = names_on(model);
+  for (const Region& region : model.regions)
+    if (!region.name.empty()) known.push_back(region.name);
+  throw UsageError(fmt::format("no patch, curve or corner is called '{}'{}", name, say_names(name, known)));
 }
 
 }  // namespace

@@ -15,11 +15,12 @@ class FacetSurface {
   FacetSurface(std::vector<std::array<Point, 3>> triangles, bool is_solid);
 
   double distance(Point p) const;
-  const Box& box() const { return tree_.bvh().box_of_all(); }
+  /// @brief Whether an odd number of triangles lies above p; exact, also for surfaces that are not taken as solids.
+  bool is_inside(Point p) const;
+  const Bvh& tree() const { return tree_.bvh(); }
+  const Box& box() const { return tree().box_of_all(); }
 
  private:
-  bool is_inside(Point p) const;
-
   TriangleTree tree_;
   bool is_solid_;
   double scale_ = 1;  ///< a power of two that brings the largest coordinate to about 1, for the predicates

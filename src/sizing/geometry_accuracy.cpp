@@ -60,7 +60,7 @@ SurfaceAccuracy measure_surface_accuracy(const Model& grid, const SurfaceLimits&
     if (!facets.is_line[e]) continue;
     const double cos_facing = std::cos(GapSizes{}.facing_deg / kDegrees);
     for (const std::uint32_t half : facets.edges.half_edges(e)) {
-      const Crossing crossing = cross_patch(facets, half, 0.5, facets.diagonal(), cos_facing);
+      const PatchCrossing crossing = cross_patch(facets, half, 0.5, facets.diagonal(), cos_facing);
       if (crossing.found()) note_low(found.line_distance, crossing.distance, middle, limits.line_distance);
     }
   }

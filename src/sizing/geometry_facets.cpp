@@ -67,13 +67,13 @@ std::array<Point, 2> plane_frame(Point normal) {
   return {u, cross(normal, u)};
 }
 
-Crossing cross_patch(const Facets& facets, std::uint32_t half_edge, double t, double largest, double cos_facing) {
+PatchCrossing cross_patch(const Facets& facets, std::uint32_t half_edge, double t, double largest, double cos_facing) {
   constexpr int kMostSteps = 20000;
   const Point from = facets.start(half_edge), along = facets.end(half_edge) - from;
   Point at = from + t * along;
   Point heading = cross(facets.normal[half_edge / 3], along);
   heading = heading / length(heading);
-  Crossing crossing;
+  PatchCrossing crossing;
   double travelled = 0;
   for (int step = 0; step < kMostSteps && travelled <= largest; ++step) {
     // leave the triangle through the side that the heading reaches first
@@ -112,7 +112,7 @@ Crossing cross_patch(const Facets& facets, std::uint32_t half_edge, double t, do
     heading = heading / length(heading);
     half_edge = next;
   }
-  return crossing.distance <= largest ? crossing : Crossing{};
+  return crossing.distance <= largest ? crossing : PatchCrossing{};
 }
 
 void GeometrySources::append(GeometrySources&& other) {

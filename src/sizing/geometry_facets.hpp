@@ -58,13 +58,13 @@ std::array<Point, 2> plane_frame(Point normal);
 Curvature compute_curvature(const Facets& facets);
 
 /// @brief A walk over triangles square to a line, to the next line that faces it.
-struct Crossing {
+struct PatchCrossing {
   double distance = std::numeric_limits<double>::infinity();  ///< along the surface
   Point at;
   bool found() const { return distance < std::numeric_limits<double>::infinity(); }
 };
 /// @param t  in (0, 1): where on the half-edge
-Crossing cross_patch(const Facets& facets, std::uint32_t half_edge, double t, double largest, double cos_facing);
+PatchCrossing cross_patch(const Facets& facets, std::uint32_t half_edge, double t, double largest, double cos_facing);
 
 /// @brief Adds a source, bounded by hmin, and keeps the report.
 void add_source(GeometrySources& to, const Simplex& shape, double h, double hmin, const std::string& group);

@@ -155,7 +155,7 @@ class LineFinder {
     constexpr int kMostLineCuts = 10;
     constexpr std::array<double, 3> kPlaces{0.1, 0.5, 0.9};
     const Point start = facets_.start(half_edge), along = facets_.end(half_edge) - start;
-    std::array<Crossing, 3> seen;
+    std::array<PatchCrossing, 3> seen;
     std::size_t nearest = 0;
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -2,58 +2,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/nearest_name.hpp"
+#include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
 #include "fmt/format.h"
 #include "sizing/geometry_facets.hpp"
+#include "sizing/model_names.hpp"
 
 namespace delfront {
 namespace {
 
-std::vector<std::string> all_names(const Model& model) {
-  std::vector<std::string> names;
-  for (const Patch& patch : model.patches) names.push_back(patch.name);
-  for (const Curve& curve : model.curves) names.push_back(curve.name);
-  names.insert(names.end(), model.corner_names.begin(), model.corner_names.end());
-  std::erase(names, std::string());
-  return names;
-}
-
 [[noreturn]] void fail_unmatched(const Model& model, const std::string& pattern) {
-  constexpr std::size_t kMostShown = 20;
-  std::vector<std::string> names = all_names(model);
-  const std::string near = nearest_name(pattern, names);
-  const std::size_t more = names.size() > kMostShown ? names.size() - kMostShown : 0;
-  names.resize(names.size() - more);
-  throw UsageError(fmt::format("size on '{}': no patch, curve or corner has such a name{}; there are: {}{}", pattern,
-                               near.empty() ? "" : fmt::format("; did you mean '{}'?", near),
-                               names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", ")),
-                               more > 0 ? fmt::format(" and {} more", more) : ""));
+  throw UsageError(fmt::format("size on '{}': no patch, curve or corner has such a name{}", pattern,
+                               say_names(pattern, names_on(model))));
 }
 
 }  // namespace
-
-bool fits_pattern(const std::string& name, const std::string& pattern) {
-  // after a mismatch the last * takes one letter more
-  constexpr std::size_t kNone = std::string::npos;
-  std::size_t n = 0, p = 0, star = kNone, star_at = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      star_at = n;
-    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-      ++p;
-      ++n;
-    } else if (star != kNone) {
-      p = star + 1;
-      n = ++star_at;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
 
 GeometrySources find_named_sizes(const Model& model, std::span<const NamedSize> sizes, Context& context) {
   constexpr double kNoSize = std::numeric_limits<double>::infinity();
@@ -64,7 +27,7 @@ GeometrySources find_named_sizes(const Model& model, std::span<const NamedSize> 
       throw UsageError(fmt::format("size on '{}': h must be positive, not {}", wish.pattern, wish.h));
     bool is_found = false;
     const auto match = [&](std::vector<double>& on, std::size_t i, const std::string& name) {
-      if (!fits_pattern(name, wish.pattern)) return;
+      if (!matches_pattern(name, wish.pattern)) return;
       is_found = true;
       on[i] = std::min(on[i], wish.h);
     };
@@ -96,12 +59,14 @@ GeometrySources find_named_sizes(const Model& model, std::span<const NamedSize> 
   return found;
 }
 
+double usual_hmin(const Model& model) {
+  return kUsualShare * (model.triangles.empty() ? model.bounding_box() : model.surface_box()).diagonal();
+}
+
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context) {
   check_bounds("automatic sizes", wish.hmin, std::numeric_limits<double>::infinity());
   GeometrySources found = find_named_sizes(model, wish.named, context);
-  const double hmin =
-      wish.hmin > 0 ? wish.hmin
-                    : kUsualShare * (model.triangles.empty() ? model.bounding_box() : model.surface_box()).diagonal();
+  const double hmin = wish.hmin > 0 ? wish.hmin : usual_hmin(model);
   if (wish.cells_per_turn) {
     CurvatureSizes curvature;
     curvature.cells_per_turn = wish.cells_per_turn;

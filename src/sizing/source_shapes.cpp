@@ -66,7 +66,7 @@ struct CheckShape {
         throw UsageError(
             fmt::format("box: min {} > max {} along {}; exchange them", b.box.low[k], b.box.high[k], "xyz"[k]));
   }
-  void operator()(const Ball& b) const {
+  void operator()(const SolidSphere& b) const {
     check_point("centre", b.centre);
     check_radius("radius", b.radius);
   }
@@ -123,7 +123,7 @@ PlacedShape::PlacedShape(const SourceShape& shape, const Motion& motion, double 
     if (axes[0] == Point{1, 0, 0} && axes[1] == Point{0, 1, 0})  // without rounding
       box_ = {motion.at(time, box->box.low), motion.at(time, box->box.high)};
     g_ = box_.low, h_ = box_.high;
-  } else if (const auto* ball = std::get_if<Ball>(&shape)) {
+  } else if (const auto* ball = std::get_if<SolidSphere>(&shape)) {
     kind_ = Kind::ball;
     at_ = motion.at(time, ball->centre);
     a_ = ball->radius;

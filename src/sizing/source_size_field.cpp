@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/size_sources.hpp"
 #include "fmt/format.h"
@@ -182,18 +183,12 @@ void check_sources(const std::vector<SizeSource>& sources, const SourceFieldOpti
   }
 }
 
-bool matches(std::string_view name, std::string_view pattern) {
-  if (pattern.empty()) return name.empty();
-  if (pattern[0] == '*') return matches(name, pattern.substr(1)) || (!name.empty() && matches(name.substr(1), pattern));
-  return !name.empty() && (pattern[0] == '?' || pattern[0] == name[0]) && matches(name.substr(1), pattern.substr(1));
-}
-
 }  // namespace
 
 std::vector<SizeSource> select_sources(std::span<const SizeSource> sources, const std::string& pattern) {
   std::vector<SizeSource> selected;
   for (const SizeSource& source : sources)
-    if (matches(source.group, pattern)) selected.push_back(source);
+    if (matches_pattern(source.group, pattern)) selected.push_back(source);
   return selected;
 }
 

@@ -14,6 +14,7 @@
 #include "delfront/io.hpp"
 #include "delfront/mesh.hpp"
 #include "io/cells.hpp"
+#include "support/errors.hpp"
 #include "support/support.hpp"
 
 namespace delfront::fixtures {
@@ -210,19 +211,9 @@ inline Mesh round_trip(const Mesh& mesh, const std::string& name, const WriteOpt
 /// @brief The message of the error of this type that reading gives; fails the test where there is none.
 template <class Error>
 std::string message_of_reading(const std::filesystem::path& path) {
+  SCOPED_TRACE(path);
   Context context;
-  try {
-    read_mesh(path.string(), context);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << path << " was read without the expected error";
-  return "";
-}
-
-inline void expect_mentions(const std::string& message, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    EXPECT_NE(message.find(word), std::string::npos) << "no '" << word << "' in: " << message;
+  return message_of<Error>([&] { read_mesh(path.string(), context); });
 }
 
 }  // namespace delfront::fixtures

@@ -25,22 +25,6 @@ std::vector<std::string> names_of_triangles(const Model& model) {
   return names;
 }
 
-TEST(MatchesPattern, knows_star_and_question_mark) {
-  for (const auto& [name, pattern] : std::vector<std::pair<std::string, std::string>>{{"wing", "wing"},
-                                                                                      {"wing", "*"},
-                                                                                      {"wing", "w*g"},
-                                                                                      {"wing", "w??g"},
-                                                                                      {"wing", "*ng*"},
-                                                                                      {"aXbXc", "a*X*c"},
-                                                                                      {"abab", "*ab"},
-                                                                                      {"", "*"},
-                                                                                      {"", ""}})
-    EXPECT_TRUE(matches_pattern(name, pattern)) << name << " " << pattern;
-  for (const auto& [name, pattern] : std::vector<std::pair<std::string, std::string>>{
-           {"wing", "Wing"}, {"wing", "win"}, {"wing", "wing?"}, {"wing", "w*x"}, {"wing", ""}, {"", "?"}})
-    EXPECT_FALSE(matches_pattern(name, pattern)) << name << " " << pattern;
-}
-
 TEST(ApplyBoundaries, merges_what_a_pattern_selects_and_keeps_the_rest) {
   Model model = model_with_patches({"OML_top", "hub", "OML_low", "tip"});
   apply_boundaries({{"wing", "OML*", "wall"}, {"tip", "", "symmetry"}}, model);

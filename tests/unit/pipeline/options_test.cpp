@@ -9,6 +9,7 @@
 #include "delfront/job.hpp"
 #include "pipeline/job_file.hpp"
 #include "pipeline/option_table.hpp"
+#include "support/errors.hpp"
 #include "support/support.hpp"
 
 namespace delfront {
@@ -182,17 +183,6 @@ TEST(SetOption, takes_words_of_the_command_line) {
   set_option(o, "limits.max_cells", "5e6");
   EXPECT_EQ(o.limits.max_cells, 5000000u);
   set_option(o, "boundaries.wing.kind", "wall");
-  set_option(o, "size.on.'le*'.h", "0.5%");
-  set_option(
-      o, "size.source",
-      "[{ type = 'point', at = [[1, 2, 3]], delta0 = '1%', r0 = 0, r1 = '2 mm', law = 'exponential', group = 'a' "
-      "}, { type = 'surface', file = '/w.stl', delta0 = 2, law = { type = 'polynomial', coefficients = [0, 1e-20] "
-      "}, stretch = { s1 = 10, first = [0, 0, 1] }, motion = { velocity = [1, 0, 0], axis = [0, 0, 1], rate = 90 "
-      "} }]");
-  set_option(
-      o, "size.box",
-      "[{ min = [0, 0, 0], max = [1, 1, 2], h = '5%' }, { shape = 'cone', from = [0, 0, 0], to = [0, 0, 1], radius "
-      "= 1, radius_to = 0.25, centre = [0, 0, 9], file = '/x.stl', h = 1 }]");
   set_option(o, "boundaries.wing.select", "OML*");
   ASSERT_EQ(o.boundaries.size(), 1u);
   EXPECT_EQ(o.boundaries[0].select, "OML*");
@@ -205,6 +195,47 @@ TEST(SetOption, takes_words_of_the_command_line) {
   EXPECT_THROW(set_option(o, "size.growth", ""), UsageError);
   EXPECT_THROW(set_option(o, "", "1"), UsageError);
   EXPECT_THROW(set_option(o, "size.growth", "1.2\nhmax = 3"), UsageError);
+}
+
+TEST(SetOption, changes_keys_of_entries_that_a_list_has) {
+  Options o = read("case.toml", R"([[size.box]]
+min = [0, 0, 0]
+max = [1, 1, 1]
+h = 1
+[[size.box]]
+shape = "sphere"
+centre = [0, 0, 0]
+radius = 1
+h = "5%"
+[[size.source]]
+type = "point"
+at = [[0, 0, 0]]
+delta0 = 1
+)");
+  set_option(o, "size.box[1].h", "0.25");
+  set_option(o, "size.box[0].max", "[2, 3, 4]");
+  set_option(o, "size.box[1]", "{ centre = [1, 2, 3], radius = 2 }");
+  set_option(o, "size.source[0].law", "exponential");
+  ASSERT_EQ(o.size.boxes.size(), 2u);
+  const auto said = [&](const char* table) { return to_toml(*option_tree(o).find("size")->find(table)); };
+  EXPECT_EQ(said("box"),
+            "[{ shape = \"box\", min = [0, 0, 0], max = [2, 3, 4], radius_to = 0, h = 1 }, "
+            "{ shape = \"sphere\", centre = [1, 2, 3], radius = 2, radius_to = 0, h = 0.25 }]");
+  EXPECT_SAYS(said("source"), "type = \"exponential\"");
+  EXPECT_EQ(o.set_at.at("size.box[1].h"), "");
+  EXPECT_SAYS(o.set_at.at("size.box[0].h"), ":4");
+  const auto refused = [&](const std::string& key, const std::string& value = "1") {
+    return fixtures::message_of<UsageError>([&] { set_option(o, key, value); });
+  };
+  fixtures::expect_mentions(refused("size.box[2].h"), {"size.box[2].h", "the last entry is size.box[1]"});
+  fixtures::expect_mentions(refused("size.box[0].hh"), {"unknown key 'size.box[0].hh'", "did you mean 'h'?"});
+  fixtures::expect_mentions(refused("size.box[0].h", "-1"), {"size.box[0].h", "not positive"});
+  for (const char* key : {"size.box[].h", "size.box[-1].h", "size.box[x]", "size.box[0", "size.box[0].", "size.box[0]h",
+                          "size.box[99999999999999999999].h"})
+    fixtures::expect_mentions(refused(key), {key, "size.box[0].KEY"});
+  set_option(o, "size.box", "[]");
+  fixtures::expect_mentions(refused("size.box[0].h"), {"there are no entries of size.box yet"});
+  EXPECT_FALSE(o.set_at.contains("size.box[0].h"));
 }
 
 TEST(Shorthand, farfield_reads_spheres_and_boxes) {

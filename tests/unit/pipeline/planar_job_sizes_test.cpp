@@ -63,10 +63,10 @@ TEST(KeptPart, the_gap_in_a_job_is_that_of_what_is_gridded) {
   Options options;
   options.size.gap.cells = 2;
   Context context;
-  std::vector<SizeSource> all, kept;
   const Model model = model_of(domain);
-  add_geometry_sources(options, model, {}, all, context);
-  add_geometry_sources(options, model, kept_part(domain, CurveId(), options, context), kept, context);
+  const std::vector<SizeSource> all = geometry_sources(options, model, {}, context);
+  const std::vector<SizeSource> kept =
+      geometry_sources(options, model, kept_part(domain, CurveId(), options, context), context);
   const auto least = [](const std::vector<SizeSource>& sources) {
     double h = 1e300;
     for (const SizeSource& source : sources) h = std::min(h, source.law.delta0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -12,6 +13,24 @@
 namespace delfront::fixtures {
 
 inline constexpr double kTurn = 2 * 3.14159265358979323846;
+
+/// @brief Least and greatest size of sources.
+struct Range {
+  double low = 1e300, high = 0;
+  std::size_t count = 0;
+};
+
+/// @param num_corners  of those that count; 0: all
+inline Range range_of(const GeometrySources& found, int num_corners = 3) {
+  Range range;
+  for (const SizeSource& source : found.sources) {
+    if (num_corners > 0 && std::get<Simplex>(source.shape).num_corners != num_corners) continue;
+    range.low = std::min(range.low, source.law.delta0);
+    range.high = std::max(range.high, source.law.delta0);
+    ++range.count;
+  }
+  return range;
+}
 
 /// @brief Triangles collected by patch; equal points are welded by build_model.
 class SurfaceBuilder {

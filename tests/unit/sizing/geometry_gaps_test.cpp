@@ -14,23 +14,9 @@ namespace delfront {
 namespace {
 
 using fixtures::kTurn;
+using fixtures::Range;
+using fixtures::range_of;
 using fixtures::SurfaceBuilder;
-
-struct Range {
-  double low = 1e300, high = 0;
-  std::size_t count = 0;
-};
-
-Range range_of(const GeometrySources& found, int num_corners = 3) {
-  Range range;
-  for (const SizeSource& source : found.sources) {
-    if (std::get<Simplex>(source.shape).num_corners != num_corners) continue;
-    range.low = std::min(range.low, source.law.delta0);
-    range.high = std::max(range.high, source.law.delta0);
-    ++range.count;
-  }
-  return range;
-}
 
 GapSizes cells(double n, double hmin = 0) {
   GapSizes wish;

@@ -6,12 +6,14 @@
 #include <random>
 
 #include "delfront/geometry_sizes.hpp"
+#include "geometry_fixtures.hpp"
 
 namespace delfront {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
+using fixtures::range_of;
 using Line = std::vector<Point>;
 
 /// Lines in the plane; closed ones end at their first vertex. `cut`: in two pieces with shared ends.
@@ -72,19 +74,6 @@ double size_at(const GeometrySources& found, Point at) {
   return size;
 }
 
-struct Range {
-  double low = 1e300, high = 0;
-};
-
-Range range_of(const GeometrySources& found) {
-  Range range;
-  for (const SizeSource& source : found.sources) {
-    range.low = std::min(range.low, source.law.delta0);
-    range.high = std::max(range.high, source.law.delta0);
-  }
-  return range;
-}
-
 CurvatureSizes per_turn(double n) {
   CurvatureSizes wish;
   wish.cells_per_turn = n;
@@ -113,8 +102,8 @@ TEST(PlaneCurvature, S9_circles_of_any_spacing_are_exact) {
       const Model model = PlaneBuilder().add(line, true, cut).model();
       const GeometrySources found = find_curvature_sizes(model, per_turn(24), context);
       const double expected = scale * 2 * kPi * 2 / 24;
-      EXPECT_NEAR(range_of(found).low, expected, 1e-8 * expected) << "seed 5";
-      EXPECT_NEAR(range_of(found).high, expected, 1e-8 * expected) << "seed 5";
+      EXPECT_NEAR(range_of(found, 0).low, expected, 1e-8 * expected) << "seed 5";
+      EXPECT_NEAR(range_of(found, 0).high, expected, 1e-8 * expected) << "seed 5";
       for (std::size_t i = 0; i < line.size(); ++i) {
         const Point p = line[i], q = line[(i + 1) % line.size()];
         EXPECT_TRUE(std::isfinite(size_at(found, p)) || scale > 1) << i;
@@ -232,11 +221,11 @@ TEST(PlaneGaps, S10_between_two_circles) {
   GapSizes wish = cells(4);
   wish.is_kept = [](Point p) { return std::hypot(p.x, p.y) > 0.9; };
   const GeometrySources found = find_gap_sizes(model, wish, context);
-  EXPECT_NEAR(range_of(found).low, 0.025, 0.001);
-  EXPECT_NEAR(range_of(found).high, 0.025, 0.001);
+  EXPECT_NEAR(range_of(found, 0).low, 0.025, 0.001);
+  EXPECT_NEAR(range_of(found, 0).high, 0.025, 0.001);
   for (std::size_t i = 0; i < outer.size(); ++i) EXPECT_LT(size_at(found, outer[i]), 0.026) << i;
   wish.is_kept = {};  // the inside of the inner circle counts too
-  EXPECT_GT(range_of(find_gap_sizes(model, wish, context)).high, 0.4);
+  EXPECT_GT(range_of(find_gap_sizes(model, wish, context), 0).high, 0.4);
 }
 
 TEST(PlaneGaps, S10_a_channel_is_as_fine_in_its_middle) {

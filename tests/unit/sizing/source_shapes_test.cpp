@@ -110,7 +110,7 @@ TEST(SourceShapes, S3_boxes_balls_cylinders_and_cones) {
   EXPECT_EQ(distance_to(box, {0.5, 1, 1.5}), 0);
   EXPECT_EQ(distance_to(box, {0.5, -2, 1}), 2);
   EXPECT_DOUBLE_EQ(distance_to(box, {4, 6, 15}), 13);
-  const Ball ball{{1, 1, 1}, 0.5};
+  const SolidSphere ball{{1, 1, 1}, 0.5};
   EXPECT_EQ(distance_to(ball, {1, 1.4, 1}), 0);
   EXPECT_DOUBLE_EQ(distance_to(ball, {1, 3, 1}), 1.5);
   const Frustum cylinder{{0, 0, 0}, {0, 0, 2}, 1, 1};
@@ -201,7 +201,7 @@ TEST(SourceShapes, S4_a_moved_shape_is_as_far_from_moved_places) {
   const Motion motion{{0.3, -1, 2}, {1, 2, 3}, {1, -1, 0.5}, 77};
   const FacetShape cube{build_facet_surface(triangles_of(fixtures::cube_surface()), true)};
   const std::vector<SourceShape> shapes = {triangle({0, 0, 0}, {1, 0.2, 0}, {0, 1, 0.4}),
-                                           AlignedBox{{{0, 0, 0}, {1, 2, 3}}}, Ball{{1, 1, 1}, 0.5},
+                                           AlignedBox{{{0, 0, 0}, {1, 2, 3}}}, SolidSphere{{1, 1, 1}, 0.5},
                                            Frustum{{0, 0, 0}, {1, 2, 3}, 0.5, 0.2}, cube};
   for (const SourceShape& shape : shapes)
     for (int i = 0; i < 200; ++i) {
@@ -229,7 +229,7 @@ TEST(SourceShapes, S4_refuses_what_is_no_shape) {
   EXPECT_THROW(check_shape(Simplex{{}, 0}), UsageError);
   EXPECT_THROW(check_shape(Simplex{{Point{nan, 0, 0}}, 1}), UsageError);
   EXPECT_THROW(check_shape(AlignedBox{{{0, 0, 0}, {1, -1, 1}}}), UsageError);
-  EXPECT_THROW(check_shape(Ball{{0, 0, 0}, -1}), UsageError);
+  EXPECT_THROW(check_shape(SolidSphere{{0, 0, 0}, -1}), UsageError);
   EXPECT_THROW(check_shape(Frustum{{1, 0, 0}, {1, 0, 0}, 1, 1}), UsageError);
   EXPECT_THROW(check_shape(FacetShape{}), UsageError);
   EXPECT_NO_THROW(check_shape(AlignedBox{{{0, 0, 0}, {0, 1, 1}}}));

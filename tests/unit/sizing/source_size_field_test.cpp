@@ -34,7 +34,7 @@ SourceShape random_shape(Random& random, int kind, double size) {
   if (kind == 3)
     return AlignedBox{{{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
                        {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}}};
-  if (kind == 4) return Ball{a, size * random.between(0, 1)};
+  if (kind == 4) return SolidSphere{a, size * random.between(0, 1)};
   if (kind == 5) return Frustum{a, b, size * random.between(0, 1), size * random.between(0, 1)};
   return Simplex{{a, b, c}, kind + 1};
 }
@@ -201,7 +201,7 @@ TEST(SourceSizeField, S5_small_bodies_far_from_the_origin) {
     SizeLaw law;
     law.delta0 = 1e-5 * random.between(1, 2);
     law.r1 = 1e-3;
-    sources.push_back({Ball{Point{1e9, -1e9, 1e9} + 1e-3 * random.point(1), 1e-4}, law, {}, {}, ""});
+    sources.push_back({SolidSphere{Point{1e9, -1e9, 1e9} + 1e-3 * random.point(1), 1e-4}, law, {}, {}, ""});
   }
   const auto tree = build(sources), scan = build(sources, kInfinity, SourceSearch::scan);
   for (int i = 0; i < 1000; ++i) {

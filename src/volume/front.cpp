@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The front in rounds: the faces that would make the smallest elements, each once, along a curve; the faces they leave
+// wait for the next round. Threads share a round out by slabs of space: a face whose neighbourhood lies in one slab is
+// that slab's, what is left is shared out along another axis, then the third, and the rest is done in one piece. Where
+// the cuts lie depends on the front alone.
+#include "volume/front.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hilbert.hpp"
+#include "base/parallel.hpp"
+#include "delfront/errors.hpp"
+#include "volume/front_closing.hpp"
+#include "volume/front_step.hpp"
+
+namespace delfront {
+
+namespace {
+
+/// Sweep by sweep less is asked for (F17).
+constexpr FrontSettings kSweeps[] = {
+    {.radius = 1.25, .quality = 0.01, .wedge = 0.03, .clearance = 0.1, .to_points = 0.7, .to_faces = 0.45},
+    {.radius = 1.6, .quality = 0.01, .wedge = 0.001, .clearance = 0.0, .to_points = 0.4, .to_faces = 0.2},
+};
+constexpr double kSmallest = 1.5;        ///< a round takes faces up to that times the smallest
+constexpr std::uint16_t kMostTries = 3;  ///< of a face in a sweep
+constexpr std::size_t kFacesPerSlab = 3000, kMostSlabs = 64;
+constexpr std::size_t kFacesPerCancelCheck = 256;
+constexpr int kPhases = 4;  ///< three axes, then one piece
+
+class Front {
+ public:
+  Front(TetComplex& complex, const SizeField& size, Context& context)
+      : c_(complex), front_(complex), size_(size), context_(context) {
+    for (std::uint32_t f = 0; f < front_.num_slots(); ++f) waiting_.push_back(f);
+    live_ = waiting_;
+  }
+
+  FrontReport run() {
+    for (const FrontSettings& settings : kSweeps) {
+      if (waiting_.empty()) break;
+      settings_ = &settings;
+      sweep();
+      ++report_.sweeps;
+      waiting_.swap(skipped_);
+      keep_live(waiting_);
+      for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
+    }
+    report_.faces_left = waiting_.size();
+    const auto left = fill_cavities(front_, waiting_, report_, context_);
+    if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
+    front_.join();
+    fill_report();
+    return report_;
+  }
+
+ private:
+  void sweep() {
+    while (choose_faces()) {
+      context_.progress("front", c_.num_live(), 0, "cells");
+      context_.check_cells(c_.num_live());
+      for (int phase = 0; phase < kPhases && !active_.empty(); ++phase) run_phase(phase);
+      ++report_.rounds;
+    }
+  }
+
+  /// Slots are used again, so a number may stand there twice.
+  void keep_live(std::vector<std::uint32_t>& faces) const {
+    std::erase_if(faces, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  }
+
+  /// F6: those that would make the smallest elements, along a curve.
+  bool choose_faces() {
+    keep_live(waiting_);
+    keep_live(live_);
+    float smallest = 1e30f;
+    for (const std::uint32_t f : waiting_) smallest = std::min(smallest, front_.face(f).size);
+    active_.clear();
+    std::erase_if(waiting_, [&](std::uint32_t f) {
+      const bool is_active = front_.face(f).size <= static_cast<float>(kSmallest) * smallest;
+      if (is_active) active_.push_back(f);
+      return is_active;
+    });
+    sort_active();
+    return !active_.empty();
+  }
+
+  void sort_active() {
+    if (active_.empty()) return;
+    Box box;
+    for (const std::uint32_t f : active_) box.add(middle(f));
+    const HilbertCurve curve(box);
+    order_.clear();
+    for (const std::uint32_t f : active_) order_.push_back({curve.key(middle(f)), f});
+    std::sort(order_.begin(), order_.end());
+    for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = order_[i].second;
+  }
+
+  Point middle(std::uint32_t f) const {
+    const auto n = front_.nodes(f);
+    return (1.0 / 3) * (c_.point(n[0]) + c_.point(n[1]) + c_.point(n[2]));
+  }
+
+  /// Cuts where as many faces lie on either side.
+  std::vector<FrontSlab> cut_slabs(int axis, bool is_last) const {
+    const std::size_t count = is_last ? 1 : std::clamp<std::size_t>(active_.size() / kFacesPerSlab, 1, kMostSlabs);
+    std::vector<double> at;
+    for (const std::uint32_t f : active_) at.push_back(middle(f)[axis]);
+    std::vector<FrontSlab> slabs(1);
+    slabs[0].axis = axis;
+    for (std::size_t i = 1; i < count; ++i) {
+      const auto nth = at.begin() + static_cast<std::ptrdiff_t>(i * at.size() / count);
+      std::nth_element(at.begin(), nth, at.end());
+      if (!(*nth > slabs.back().low)) continue;
+      slabs.back().high = *nth;
+      slabs.push_back({axis, *nth});
+    }
+    return slabs;
+  }
+
+  void run_phase(int phase) {
+    std::erase_if(active_, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
+    const int axis = static_cast<int>((report_.rounds + static_cast<unsigned>(phase)) % 3);
+    const std::vector<FrontSlab> slabs = cut_slabs(axis, phase == kPhases - 1);
+    std::vector<std::vector<std::uint32_t>> faces(slabs.size()), left(slabs.size()), failed(slabs.size());
+    for (const std::uint32_t f : active_) {
+      const double x = middle(f)[axis];
+      std::size_t i = 0;
+      while (x >= slabs[i].high) ++i;
+      faces[i].push_back(f);
+    }
+    std::vector<FrontWorker> workers;
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+      workers.emplace_back(front_, size_, *settings_, slabs[i]);
+      workers.back().stock = front_.take(faces[i].size());
+    }
+    parallel_for(context_.threads, slabs.size(),
+                 [&](std::size_t i) { work(workers[i], slabs[i], faces[i], left[i], failed[i]); });
+    active_.clear();
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+      FrontWorker& worker = workers[i];
+      front_.give(worker.stock);
+      counts_ += worker.counts;
+      waiting_.insert(waiting_.end(), worker.made.begin(), worker.made.end());
+      live_.insert(live_.end(), worker.made.begin(), worker.made.end());
+      active_.insert(active_.end(), left[i].begin(), left[i].end());
+      for (const std::uint32_t f : failed[i])
+        if (front_.face(f).is_alive) (++front_.face(f).tries < kMostTries ? waiting_ : skipped_).push_back(f);
+    }
+  }
+
+  void work(FrontWorker& worker, const FrontSlab& slab, const std::vector<std::uint32_t>& faces,
+            std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& failed) const {
+    plant_tree(worker, slab, faces);
+    std::size_t seen = 0;
+    for (const std::uint32_t f : faces) {
+      if (seen++ % kFacesPerCancelCheck == 0) context_.check_limits();
+      const auto result = worker.advance(f);
+      if (result == FrontWorker::Result::deferred) left.push_back(f);
+      if (result == FrontWorker::Result::failed) failed.push_back(f);
+    }
+  }
+
+  /// The points that may be met round these faces.
+  void plant_tree(FrontWorker& worker, const FrontSlab& slab, const std::vector<std::uint32_t>& faces) const {
+    Box box;
+    double margin = 0;
+    for (const std::uint32_t f : faces) {
+      for (const VertexIndex v : front_.nodes(f)) box.add(c_.point(v));
+      margin = std::max(margin, worker.reach_of_step(f));
+    }
+    const Point around{margin, margin, margin};
+    box.low = box.low - around;
+    box.high = box.high + around;
+    box.low[slab.axis] = std::max(box.low[slab.axis], slab.low);
+    box.high[slab.axis] = std::min(box.high[slab.axis], slab.high);
+    worker.tree.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
+    for (const std::uint32_t f : live_) {
+      if (!front_.face(f).is_alive) continue;
+      if (box.overlaps(front_.box(f))) worker.add_to_tree(f);
+    }
+  }
+
+  void fill_report() {
+    report_.faces_processed = counts_.steps;
+    report_.tets = counts_.tets;
+    report_.points += counts_.points;
+    report_.crossing_share = counts_.step_seconds > 0 ? counts_.test_seconds / counts_.step_seconds : 0;
+    const auto a_step = [&](std::uint64_t n) {
+      return static_cast<double>(n) / static_cast<double>(std::max<std::uint64_t>(counts_.steps, 1));
+    };
+    context_.log(
+        LogLevel::debug,
+        fmt::format("front: {} steps, {} deferred, {} failed; a step looks at {:.1f} faces ({:.1f} near, {:.1f} "
+                    "points), {:.2f} candidates, tests {:.2f} tets, {:.2f} faces by planes, {:.2f} exactly",
+                    counts_.steps, counts_.deferred, counts_.failed, a_step(counts_.visited),
+                    a_step(counts_.near.faces), a_step(counts_.near.points), a_step(counts_.candidates),
+                    a_step(counts_.near.tests), a_step(counts_.near.plane_tests), a_step(counts_.near.exact_tests)));
+  }
+
+  TetComplex& c_;
+  FrontStore front_;
+  const SizeField& size_;
+  Context& context_;
+  const FrontSettings* settings_ = nullptr;
+  std::vector<std::uint32_t> waiting_, skipped_, active_;  ///< faces
+  std::vector<std::uint32_t> live_;                        ///< all faces of the front; some that were
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;
+  FrontCounts counts_;
+  FrontReport report_;
+};
+
+/// Edges of curves, and points that have to stay, inside of regions.
+bool has_inner_constraints(const TetComplex& c) {
+  if (!c.kept_edges.empty()) return true;
+  std::vector<bool> on_face(c.num_vertices(), false);
+  for (FaceRef ref = 0; ref < 4 * c.num_slots(); ++ref)
+    if (!c.is_dead(ref >> 2) && !c.is_ghost(ref >> 2) && c.is_constrained(ref))
+      for (const VertexIndex v : c.face_nodes(ref)) on_face[v] = true;
+  for (VertexIndex v = 0; v < c.num_vertices(); ++v)
+    if (c.vertex_tet[v] != kNoIndex && c.on_boundary[v] && !on_face[v]) return true;
+  return false;
+}
+
+}  // namespace
+
+FrontReport fill_by_front(BoundaryGrid& grid, const SizeField& size, Context& context) {
+  const StageTimer timer(context, "front");
+  FrontReport report;
+  const auto give_up = [&](const char* why) {
+    report = {};
+    report.gave_up = why;
+    context.warn(fmt::format("no pure front here: {}; points by the front, connected by Delaunay, instead", why));
+  };
+  if (has_inner_constraints(grid.complex)) {
+    give_up("curves or points are embedded in the volume");
+    return report;
+  }
+  const TetComplex empty = grid.complex;
+  try {
+    report = Front(grid.complex, size, context).run();
+  } catch (const MeshingError& e) {
+    grid.complex = empty;
+    give_up(e.what());
+  }
+  return report;
+}
+
+}  // namespace delfront

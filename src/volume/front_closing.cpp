@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "volume/front_closing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "delfront/errors.hpp"
+#include "front/point_tree.hpp"
+#include "tetra/quality.hpp"
+#include "volume/recover.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr double kGoodEnough = 0.02;  ///< squared sine: 8 degrees
+constexpr double kBarelyEnough = 0.001;
+constexpr int kStrictRounds = 16, kRounds = 24;
+constexpr std::size_t kMostEmptied = 4;  ///< tets a round, so that the point can follow
+constexpr std::uint16_t kGivenUp = 0xffff;
+constexpr std::size_t kMostFaces = 600;  ///< of a cavity that is filled round one point
+constexpr int kHalvings = 8;
+
+class CavityFiller {
+ public:
+  CavityFiller(FrontStore& front, PointTree<3>& tree, FrontReport& report)
+      : front_(front), c_(front.complex()), tree_(tree), report_(report) {}
+
+  /// @return whether the cavity that has face f is filled; else its faces are added to `left`
+  bool fill(std::uint32_t f, std::vector<std::uint32_t>& left) {
+    for (int round = 0; round < kRounds; ++round) {
+      collect(f);
+      if (faces_.size() > kMostFaces) break;
+      if (const VertexIndex apex = find_apex(); apex != kNoIndex) return add_star(apex), true;
+      const Point p = find_point();
+      const double floor = round < kStrictRounds ? kGoodEnough : kBarelyEnough;
+      if (empty_behind_bad_faces(p, floor) > 0) {
+        f = made_[0];
+        continue;
+      }
+      if (!sees_all(p) || !is_clear(p)) break;
+      add_star(add_point(p));
+      return true;
+    }
+    for (const std::uint32_t g : faces_) {
+      front_.face(g).tries = kGivenUp;
+      left.push_back(g);
+    }
+    return false;
+  }
+
+ private:
+  /// The faces that hang together with f by edges.
+  void collect(std::uint32_t f) {
+    faces_.assign(1, f);
+    ++stamp_;
+    front_.face(f).stamp = stamp_;
+    for (std::size_t i = 0; i < faces_.size() && faces_.size() <= kMostFaces; ++i) {
+      const auto n = front_.nodes(faces_[i]);
+      for (unsigned k = 0; k < 3; ++k) {
+        const VertexIndex a = n[k], b = n[k == 2 ? 0 : k + 1];
+        for (std::uint32_t e = front_.first_at(b); e != kNoIndex; e = front_.next_at(e)) {
+          FrontFace& g = front_.face(e >> 2);
+          if (g.stamp == stamp_ || g.node[(e & 3) == 2 ? 0 : (e & 3) + 1] != a) continue;
+          g.stamp = stamp_;
+          faces_.push_back(e >> 2);
+        }
+      }
+    }
+    batch_.clear();
+    for (const std::uint32_t g : faces_) {
+      const auto n = front_.nodes(g);
+      batch_.add(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]));
+    }
+  }
+
+  /// Uphill in the worst quality, from the mean of the corners.
+  Point find_point() {
+    Point p;
+    double extent = 0;
+    for (const std::uint32_t f : faces_)
+      for (const VertexIndex v : front_.nodes(f)) p = p + c_.point(v);
+    p = (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
+    for (const std::uint32_t f : faces_) extent = std::max(extent, distance(c_.point(front_.nodes(f)[0]), p));
+    double best = batch_.worst(p), step = 0.25 * extent;
+    for (int k = 0; k < kHalvings; ++k) {
+      bool moved = false;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {1.0, -1.0}) {
+          Point next = p;
+          next[axis] += sign * step;
+          const double q = batch_.worst(next, best);
+          if (q <= best) continue;
+          p = next, best = q, moved = true;
+        }
+      if (!moved) step *= 0.5;
+    }
+    return p;
+  }
+
+  /// The tets behind faces that p sees badly go; those of the given boundary stay, however badly.
+  std::size_t empty_behind_bad_faces(const Point& p, double floor) {
+    batch_.measure(p, quality_);
+    made_.clear();
+    std::size_t emptied = 0;
+    order_.clear();
+    for (std::uint32_t i = 0; i < faces_.size(); ++i)
+      if (quality_[i] < floor) order_.push_back(i);
+    std::stable_sort(order_.begin(), order_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return quality_[a] < quality_[b]; });
+    for (const std::uint32_t i : order_) {
+      const FrontFace& f = front_.face(faces_[i]);
+      if (!f.is_alive || f.is_boundary) continue;
+      front_.remove_tet(f.behind >> 2, made_);
+      if (++emptied == kMostEmptied) break;
+    }
+    std::erase_if(made_, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
+    for (const std::uint32_t f : made_)
+      for (const VertexIndex v : front_.nodes(f)) {
+        const Point at = c_.point(v);
+        tree_.insert(v, {at.x, at.y, at.z}, 0);
+      }
+    report_.tets_emptied += emptied;
+    return made_.empty() ? 0 : emptied;
+  }
+
+  bool sees_all(const Point& p) const {
+    return std::all_of(faces_.begin(), faces_.end(), [&](std::uint32_t f) {
+      const auto n = front_.nodes(f);
+      return orient3d(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), p) > 0;
+    });
+  }
+
+  /// Whether no other part of the front lies in the cavity.
+  bool is_clear(const Point& p) {
+    Box box;
+    ++stamp_;
+    for (const std::uint32_t f : faces_)
+      for (const VertexIndex v : front_.nodes(f)) box.add(c_.point(v));
+    bool clear = true;
+    tree_.for_each_near({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}, [&](VertexIndex v) {
+      if (clear && front_.first_at(v) != kNoIndex && is_inside(v, p)) clear = false;
+    });
+    return clear;
+  }
+
+  /// Whether v, if it is no corner of the cavity, lies in the star of p.
+  bool is_inside(VertexIndex v, const Point& p) const {
+    const Point at = c_.point(v);
+    bool inside = false;
+    for (const std::uint32_t f : faces_) {
+      const auto n = front_.nodes(f);
+      if (n[0] == v || n[1] == v || n[2] == v) return false;
+      const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
+      inside = inside || (orient3d(a, b, c, at) >= 0 && orient3d(a, p, b, at) >= 0 && orient3d(b, p, c, at) >= 0 &&
+                          orient3d(c, p, a, at) >= 0);
+    }
+    return inside;
+  }
+
+  /// The fourth corner of a cavity that is a tet; kNoIndex where that is none, or a bad one.
+  VertexIndex find_apex() const {
+    if (faces_.size() != 4) return kNoIndex;
+    const auto n = front_.nodes(faces_[0]);
+    for (const VertexIndex v : front_.nodes(faces_[1])) {
+      if (v == n[0] || v == n[1] || v == n[2]) continue;
+      const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]), d = c_.point(v);
+      if (measure_quality(a, b, c, d) >= kGoodEnough && orient3d(a, b, c, d) > 0) return v;
+    }
+    return kNoIndex;
+  }
+
+  void add_star(VertexIndex apex) {
+    FrontStock stock = front_.take(faces_.size());
+    made_.clear();
+    for (const std::uint32_t f : faces_)
+      if (front_.face(f).is_alive) ++report_.tets_refilled, front_.add_tet(f, apex, stock, made_);
+    front_.give(stock);
+  }
+
+  VertexIndex add_point(const Point& p) {
+    double h = 0;
+    for (const std::uint32_t f : faces_) h += c_.vertex[front_.nodes(f)[0]].h;
+    const VertexIndex v = c_.take_vertices(1)[0];
+    c_.set_vertex(v, p, h / static_cast<double>(faces_.size()));
+    front_.add_vertex();
+    ++report_.points;
+    return v;
+  }
+
+  FrontStore& front_;
+  TetComplex& c_;
+  PointTree<3>& tree_;
+  FrontReport& report_;
+  std::uint64_t stamp_ = std::uint64_t{1} << 63;
+  std::vector<std::uint32_t> faces_, made_, order_;
+  FaceBatch batch_;
+  std::vector<double> quality_;
+};
+
+PointTree<3> plant_tree(FrontStore& front, const std::vector<std::uint32_t>& faces) {
+  const TetComplex& c = front.complex();
+  Box box;
+  for (const std::uint32_t f : faces)
+    for (const VertexIndex v : front.nodes(f)) box.add(c.point(v));
+  PointTree<3> tree;
+  tree.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
+  for (const std::uint32_t f : faces)
+    for (const VertexIndex v : front.nodes(f)) {
+      const Point p = c.point(v);
+      tree.insert(v, {p.x, p.y, p.z}, 0);
+    }
+  return tree;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<std::uint32_t>& faces,
+                                         FrontReport& report, Context& context) {
+  PointTree<3> tree = plant_tree(front, faces);
+  CavityFiller filler(front, tree, report);
+  std::vector<std::uint32_t> left;
+  for (const std::uint32_t f : faces) {
+    if (!front.face(f).is_alive || front.face(f).tries == kGivenUp) continue;
+    context.check_limits();
+    ++report.cavities;
+    if (!filler.fill(f, left)) ++report.cavities_left;
+  }
+  std::erase_if(left, [&](std::uint32_t f) { return !front.face(f).is_alive; });
+  std::sort(left.begin(), left.end());
+  left.erase(std::unique(left.begin(), left.end()), left.end());
+  return left;
+}
+
+namespace {
+
+/// The cavities as a model of their own: one patch, faces turned outwards.
+struct CavityModel {
+  Model model;
+  std::vector<VertexIndex> vertex;  ///< of the complex, by point of the model
+};
+
+CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces) {
+  CavityModel cavity;
+  const TetComplex& c = front.complex();
+  std::unordered_map<VertexIndex, VertexId> number;
+  cavity.model.patches.push_back({"cavities", ""});
+  for (const std::uint32_t f : faces) {
+    const auto n = front.nodes(f);
+    std::array<VertexId, 3> corner;
+    for (unsigned i = 0; i < 3; ++i) {
+      const VertexIndex v = n[i == 0 ? 0 : 3 - i];
+      const auto [at, is_new] = number.try_emplace(v, VertexId(cavity.vertex.size()));
+      if (is_new) {
+        cavity.vertex.push_back(v);
+        cavity.model.points.push_back(c.point(v));
+      }
+      corner[i] = at->second;
+    }
+    cavity.model.triangles.push_back(corner);
+    cavity.model.patch_of_triangle.push_back(PatchId(0));
+    cavity.model.input_face.push_back(f);
+  }
+  return cavity;
+}
+
+}  // namespace
+
+void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report,
+                       Context& context) {
+  CavityModel cavity = model_of(front, faces);
+  DomainOptions all;
+  all.keep = "all";
+  RecoveryReport recovery;
+  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, all, {false}, recovery, context);
+  if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
+  const TetComplex& from = grid.complex;
+  TetComplex& c = front.complex();
+  for (VertexIndex v = static_cast<VertexIndex>(cavity.vertex.size()); v < from.num_vertices(); ++v) {
+    const VertexIndex own = c.take_vertices(1)[0];
+    c.set_vertex(own, from.point(v), from.vertex[v].h);
+    cavity.vertex.push_back(own);
+    front.add_vertex();
+  }
+  front.add_tets(from, cavity.vertex);
+  report.tets_of_cavities += from.num_live();
+}
+
+}  // namespace delfront

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// One step of the front: a face, its ideal point, the points that could be taken instead, and the first of them whose
+// tet crosses nothing.
+#include "volume/front_step.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tetra/quality.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr std::uint64_t kTimed = 16;
+constexpr double kShortest = 0.6, kLongest = 1.7;  ///< wanted edge, of the mean edge of the face
+constexpr double kLowest = 0.35;                   ///< height of the ideal point, of the wanted edge
+constexpr double kPreferOld = 0.7;                 ///< a new point's score, times its quality: old ones need no more
+constexpr double kReuse = 0.7;  ///< an old point nearer than that to the ideal one, in wanted edges, is it
+constexpr double kNearBonus = 4;
+constexpr double kLongEdge = 1.1;  ///< wanted edges; beyond, a candidate is worth less
+constexpr double kHeights[] = {1.0, 0.75, 0.5};
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+FrontCounts& FrontCounts::operator+=(const FrontCounts& o) {
+  steps += o.steps, tets += o.tets, points += o.points, deferred += o.deferred, failed += o.failed;
+  candidates += o.candidates, visited += o.visited;
+  timed_steps += o.timed_steps, step_seconds += o.step_seconds, test_seconds += o.test_seconds;
+  near.faces += o.near.faces, near.points += o.near.points, near.tests += o.near.tests;
+  near.plane_tests += o.near.plane_tests, near.exact_tests += o.near.exact_tests;
+  return *this;
+}
+
+void FrontWorker::add_to_tree(std::uint32_t f) {
+  const Box box = front_.box(f);
+  const Point middle = box.centre(), half = 0.5 * (box.high - box.low);
+  tree.insert(f, {middle.x, middle.y, middle.z}, {half.x, half.y, half.z});
+}
+
+FrontWorker::Result FrontWorker::advance(std::uint32_t f) {
+  if (!front_.face(f).is_alive) return Result::gone;
+  is_timed_ = counts.steps++ % kTimed == 0;
+  const double start = is_timed_ ? seconds_now() : 0;
+  measure(f);
+  Result result = Result::deferred;
+  if (gather(f)) {
+    candidates_.clear();
+    add_candidates();
+    add_new_points(f);
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    result = Result::failed;
+    for (const Candidate& candidate : candidates_) {
+      ++counts.candidates;
+      if (candidate.point == kNoIndex ? try_new_point(f, candidate) : try_point(f, candidate)) {
+        result = Result::done;
+        break;
+      }
+    }
+  }
+  counts.deferred += result == Result::deferred;
+  counts.failed += result == Result::failed;
+  if (is_timed_) {
+    ++counts.timed_steps;
+    counts.step_seconds += seconds_now() - start;
+  }
+  counts.near = near_.counts;
+  return result;
+}
+
+/// The ideal point (F7.1): over the centroid, with edges as long as wanted.
+void FrontWorker::measure(std::uint32_t f) {
+  near_.start(f);
+  const auto n = front_.nodes(f);
+  double h = 0, perimeter = 0, spread = 0;
+  for (unsigned i = 0; i < 3; ++i) corner_[i] = c_.point(n[i]), h += c_.vertex[n[i]].h / 3;
+  centroid_ = near_.origin();
+  normal_ = near_.normal();
+  for (unsigned i = 0; i < 3; ++i) {
+    perimeter += distance(corner_[i], corner_[i == 2 ? 0 : i + 1]);
+    spread += squared_length(corner_[i] - centroid_) / 3;
+  }
+  edge_ = perimeter / 3;
+  wanted_ = std::clamp(h, kShortest * edge_, kLongest * edge_);
+  const double height = std::sqrt(std::max(wanted_ * wanted_ - spread, kLowest * kLowest * wanted_ * wanted_));
+  ideal_ = centroid_ + height * normal_;
+}
+
+double FrontWorker::reach_of_step(std::uint32_t f) const {
+  const auto n = front_.nodes(f);
+  double longest = 0;
+  for (unsigned i = 0; i < 3; ++i)
+    longest = std::max(longest, distance(c_.point(n[i]), c_.point(n[i == 2 ? 0 : i + 1])));
+  return (set_.radius + 1) * kLongest * longest;
+}
+
+/// Faces of the front that may meet a tet over face f. @return false where they reach out of the slab
+bool FrontWorker::gather(std::uint32_t f) {
+  const double radius = set_.radius * wanted_;
+  Point low = ideal_ - Point{radius, radius, radius}, high = ideal_ + Point{radius, radius, radius};
+  for (const Point& p : corner_)
+    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+  if (!slab_.holds(low, high)) return false;
+  tree.for_each_near({low.x, low.y, low.z}, {high.x, high.y, high.z}, [&](std::uint32_t g) {
+    ++counts.visited;
+    if (g != f && front_.face(g).is_alive) near_.add_face(g);
+  });
+  near_.counts.faces += near_.num_faces();
+  near_.counts.points += near_.num_points();
+  return true;
+}
+
+double FrontWorker::quality(const Point& apex) const {
+  return measure_quality(corner_[0], corner_[1], corner_[2], apex);
+}
+
+/// Points of the front within reach, in front of the face (F7.2, F14, F15).
+void FrontWorker::add_candidates() {
+  const Point ideal = ideal_ - centroid_;
+  const double radius2 = set_.radius * set_.radius * wanted_ * wanted_;
+  for (std::size_t p = 3; p < near_.num_points(); ++p) {
+    const Point at = near_.at(p);
+    const double d2 = squared_length(at - ideal);
+    if (near_.height(p) <= 0 || d2 > radius2) continue;
+    const Point absolute = c_.point(near_.id(p));
+    double score = quality(absolute);
+    if (score < set_.quality) continue;
+    const double wedge = near_.measure_wedges(p);
+    if (wedge < set_.wedge) continue;
+    score = std::min(score, wedge);
+    double longest = 0;
+    for (const Point& corner : corner_) longest = std::max(longest, squared_length(absolute - corner));
+    longest = std::sqrt(longest) / std::max(wanted_, edge_);
+    if (longest > kLongEdge) score *= kLongEdge / longest * kLongEdge / longest;
+    if (d2 < kReuse * kReuse * wanted_ * wanted_) score *= kNearBonus;
+    candidates_.push_back({score, static_cast<std::uint32_t>(p), {}});
+  }
+}
+
+void FrontWorker::add_new_points(std::uint32_t) {
+  const Point up = ideal_ - centroid_;
+  double share = kPreferOld;
+  for (const double height : kHeights) {
+    const Point place = centroid_ + height * up;
+    const std::size_t at = near_.add_place(place);
+    const double q = quality(place), wedge = near_.measure_wedges(at);
+    near_.drop_place();
+    if (q >= set_.quality && wedge >= set_.wedge) candidates_.push_back({share * std::min(q, wedge), kNoIndex, place});
+    share *= 0.5;
+  }
+}
+
+Neighbourhood::Verdict FrontWorker::test(std::size_t apex) {
+  const double start = is_timed_ ? seconds_now() : 0;
+  const auto verdict = near_.test(apex, set_.clearance * wanted_, set_.wedge > 0 ? std::sqrt(1 - set_.wedge) : 1);
+  if (is_timed_) counts.test_seconds += seconds_now() - start;
+  return verdict;
+}
+
+bool FrontWorker::try_point(std::uint32_t f, const Candidate& candidate) {
+  const VertexIndex d = near_.id(candidate.point);
+  if (orient3d(corner_[0], corner_[1], corner_[2], c_.point(d)) <= 0) return false;
+  if (test(candidate.point) != Neighbourhood::Verdict::free) return false;
+  add_tet(f, d);
+  return true;
+}
+
+void FrontWorker::add_tet(std::uint32_t f, VertexIndex d) {
+  const std::size_t before = made.size();
+  front_.add_tet(f, d, stock, made);
+  for (std::size_t i = before; i < made.size(); ++i) add_to_tree(made[i]);
+  ++counts.tets;
+}
+
+bool FrontWorker::is_roomy(std::size_t place, double size) const {
+  return near_.distance_to_points(place) >= set_.to_points * size &&
+         near_.distance_to_faces(place) >= set_.to_faces * size;
+}
+
+bool FrontWorker::try_new_point(std::uint32_t f, const Candidate& candidate) {
+  if (orient3d(corner_[0], corner_[1], corner_[2], candidate.place) <= 0) return false;
+  const std::size_t place = near_.add_place(candidate.place);
+  bool fits = is_roomy(place, wanted_) && test(place) == Neighbourhood::Verdict::free;
+  near_.drop_place();
+  if (!fits) return false;
+  const VertexIndex d = stock.vertices.back();
+  stock.vertices.pop_back();
+  c_.set_vertex(d, candidate.place, size_.size(candidate.place));
+  add_tet(f, d);
+  ++counts.points;
+  return true;
+}
+
+}  // namespace delfront

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "delfront/size_field.hpp"
+#include "front/point_tree.hpp"
+#include "volume/front_neighbourhood.hpp"
+#include "volume/front_store.hpp"
+
+namespace delfront {
+
+/// @brief What a sweep of the front asks of its tets (F17); lengths in wanted sizes.
+struct FrontSettings {
+  double radius;     ///< of the search for points round the ideal one
+  double quality;    ///< least squared sine of a dihedral angle
+  double wedge;      ///< least squared sine of an angle left between two faces
+  double clearance;  ///< between a tet and points that are not its own
+  double to_points;  ///< from a new point to others
+  double to_faces;   ///< from a new point to faces
+};
+
+/// @brief A slab of space between two values of a coordinate, that one worker may change.
+struct FrontSlab {
+  int axis = 0;
+  double low = -1e300, high = 1e300;
+  bool holds(const Point& low_corner, const Point& high_corner) const {
+    return low <= low_corner[axis] && high_corner[axis] < high;
+  }
+};
+
+struct FrontCounts {
+  std::uint64_t steps = 0, tets = 0, points = 0, deferred = 0, failed = 0, candidates = 0, visited = 0;
+  std::uint64_t timed_steps = 0;              ///< one in kTimed is timed ...
+  double step_seconds = 0, test_seconds = 0;  ///< ... of these, in the crossing test
+  Neighbourhood::Counts near;
+  FrontCounts& operator+=(const FrontCounts& other);
+};
+
+/// @brief Takes faces of the front one by one and puts tets on them (F6-F10), within a slab.
+class FrontWorker {
+ public:
+  enum class Result : std::uint8_t {
+    done,
+    gone,      ///< the face is not there any more
+    deferred,  ///< what is near it reaches out of the slab
+    failed,    ///< no tet that is good enough fits over it
+  };
+
+  FrontWorker(FrontStore& front, const SizeField& size, const FrontSettings& settings, const FrontSlab& slab)
+      : front_(front), c_(front.complex()), size_(size), set_(settings), slab_(slab), near_(front) {}
+
+  /// @brief Faces of the front that may lie near those to come; some that are gone.
+  PointTree<3> tree;
+  FrontStock stock;
+  std::vector<std::uint32_t> made;  ///< new faces
+  FrontCounts counts;
+
+  Result advance(std::uint32_t f);
+  void add_to_tree(std::uint32_t f);
+  /// @brief How far from its corners a step may look.
+  double reach_of_step(std::uint32_t f) const;
+
+ private:
+  struct Candidate {
+    double score;
+    std::uint32_t point;  ///< in the neighbourhood; kNoIndex for a new point
+    Point place;          ///< new point
+  };
+
+  void measure(std::uint32_t f);
+  bool gather(std::uint32_t f);
+  void add_candidates();
+  void add_new_points(std::uint32_t f);
+  bool try_new_point(std::uint32_t f, const Candidate& candidate);
+  bool try_point(std::uint32_t f, const Candidate& candidate);
+  bool is_roomy(std::size_t place, double size) const;
+  Neighbourhood::Verdict test(std::size_t apex);
+  void add_tet(std::uint32_t f, VertexIndex d);
+  double quality(const Point& apex) const;
+
+  FrontStore& front_;
+  TetComplex& c_;
+  const SizeField& size_;
+  const FrontSettings set_;
+  const FrontSlab slab_;
+  Neighbourhood near_;
+  bool is_timed_ = false;
+  Point corner_[3], centroid_, normal_, ideal_;
+  double edge_ = 0, wanted_ = 0;  ///< mean edge, wanted edge
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace delfront
