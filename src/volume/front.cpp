@@ -50,7 +50,7 @@ class Front {
       keep_live(waiting_);
       for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
     }
-    report_.faces_left = waiting_.size();
+    report_.sides_left = waiting_.size();
     const auto left = fill_cavities(front_, waiting_, report_, context_);
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     front_.join();
@@ -188,8 +188,8 @@ class Front {
   }
 
   void fill_report() {
-    report_.faces_processed = counts_.steps;
-    report_.tets = counts_.tets;
+    report_.sides_processed = counts_.steps;
+    report_.cells = counts_.tets;
     report_.points += counts_.points;
     report_.crossing_share = counts_.step_seconds > 0 ? counts_.test_seconds / counts_.step_seconds : 0;
     const auto a_step = [&](std::uint64_t n) {
