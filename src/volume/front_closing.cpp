@@ -331,7 +331,7 @@ namespace {
 void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report, Context& context) {
   CavityModel cavity = model_of(front, faces);
   RecoveryReport recovery;
-  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, {}, {false}, recovery, context);
+  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, DomainOptions(), {false}, recovery, context);
   if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
   const TetComplex& from = grid.complex;
   TetComplex& c = front.complex();
