@@ -32,7 +32,8 @@ constexpr std::size_t kFacesPerSlab = 1000, kMostSlabs = 64;
 constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may leave to the next cuts, about
 constexpr double kWorthSlabs = 0.15;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
-constexpr int kPhases = 4;  ///< three axes, then one piece
+constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
+constexpr int kPhases = 4;       ///< three axes, then one piece
 
 class Front {
  public:
@@ -43,17 +44,15 @@ class Front {
   }
 
   FrontReport run() {
-    for (const FrontSettings& settings : kSweeps) {
-      if (waiting_.empty()) break;
-      settings_ = &settings;
-      sweep();
-      ++report_.sweeps;
-      waiting_.swap(skipped_);
-      keep_live(waiting_);
-      for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
-    }
+    for (const FrontSettings& settings : kSweeps) sweep(settings);
     report_.sides_left = waiting_.size();
-    const auto left = fill_cavities(front_, waiting_, report_, context_);
+    std::vector<std::uint32_t> left = fill_cavities(front_, waiting_, report_, context_);
+    for (int again = 0; again < kSweepsAgain && !left.empty(); ++again) {
+      report_.cavities_left = 0;
+      live_ = waiting_ = empty_around(front_, left, report_);
+      for (const FrontSettings& settings : kSweeps) sweep(settings);
+      left = fill_cavities(front_, waiting_, report_, context_);
+    }
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     front_.join();
     fill_report();
@@ -61,7 +60,10 @@ class Front {
   }
 
  private:
-  void sweep() {
+  void sweep(const FrontSettings& settings) {
+    if (waiting_.empty()) return;
+    settings_ = &settings;
+    ++report_.sweeps;
     while (choose_faces()) {
       context_.progress("front", c_.num_live(), 0, "cells");
       context_.check_cells(c_.num_live());
@@ -70,6 +72,10 @@ class Front {
         run_phase(phase > 0 && active_.size() <= few ? kPhases - 1 : phase);
       ++report_.rounds;
     }
+    waiting_.swap(skipped_);
+    skipped_.clear();
+    keep_live(waiting_);
+    for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
   }
 
   /// Slots are used again, so a number may stand there twice.
