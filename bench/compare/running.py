@@ -22,6 +22,7 @@ class Tool:
     version: str = ""
     missing: str = ""  # why it cannot be run; "" if it can
     phase: Callable[[Path, str], float | None] = lambda folder, log: None  # (folder, log) -> seconds
+    details: Callable[[Path, str], dict] = lambda folder, log: {}  # further figures of each run
     facts: Callable[[Path, str], dict] = lambda folder, log: {}  # after the first run: counts, volume, quality
     outputs: list[str] = field(default_factory=list)  # removed before each run; must be there afterwards
     extra_outputs: list[str] = field(default_factory=list)  # removed before each run
@@ -60,7 +61,7 @@ def run_once(tool: Tool, folder: Path, launcher: Path, time_limit: float) -> dic
         failure = f"failed (status {run['status']}): {last[:90]}"
     run["failure"] = failure
     run["phase"] = None if failure else tool.phase(folder, log)
-    return run
+    return run if failure else run | tool.details(folder, log)
 
 
 def run_interleaved(tools: list[Tool], folder: Path, launcher: Path, limits: Limits, stamp: str, say) -> list[dict]:
