@@ -104,7 +104,7 @@ void square_case() {
   const Uniform field(1.0 / kSquareSide);
   grid.complex.h.assign(domain.points.size(), 1.0 / kSquareSide);
   PlanarCounts counts;
-  const double refined = seconds_of([&] { refine_complex(grid, field, context, &counts); });
+  const double refined = seconds_of([&] { refine_complex(grid, field, context, PointPlacement::frontal, &counts); });
   ImproveReport report;
   const double improved = seconds_of([&] {
     report = improve_complex(

@@ -23,7 +23,8 @@ const char* const kDescription =
     "  delfront mesh  body.stl -o body.vtu         grid the inside\n"
     "  delfront mesh  car.stl  -o case/ --farfield box:10c   grid the outside, for OpenFOAM\n"
     "  delfront check body.vtu                     quality of a grid, with its worst cells\n"
-    "  delfront convert body.vtu body.su2          another file format";
+    "  delfront convert body.vtu body.su2          another file format\n"
+    "  delfront refine body.vtu -o fine.vtu        every edge halved";
 
 std::string footer() {
   return "File formats, by extension:\n" + format_list() +
@@ -75,6 +76,7 @@ int parse_and_run(int argc, char** argv) {
   commands.push_back(make_check_command(app));
   commands.push_back(make_info_command(app));
   commands.push_back(make_convert_command(app));
+  commands.push_back(make_refine_command(app));
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);

@@ -37,12 +37,12 @@ def line_of(row, run):
     if front.get("gave_up"):
         run.problems.append("no front: " + front["gave_up"])
     tets = run.get("quality", "num_cells")
-    share = front["tets_of_cavities"] / max(tets, 1)
+    share = front["closed_by_delaunay"] / max(tets, 1)
     if share > MOST_BY_DELAUNAY:
         run.problems.append(f"{share:.2%} of the tetrahedra by Delaunay")
     least, mean = (run.get("quality", "measures", "min_dihedral", k) for k in ("min", "mean"))
     verdict = "; ".join(run.problems) or run.verdict
-    return (f"| {row['path']} | {tets:,} | {front['sweeps']} | {front['cavities']} | {front['tets_emptied']} | "
+    return (f"| {row['path']} | {tets:,} | {front['sweeps']} | {front['cavities']} | {front['cells_emptied']} | "
             f"{front['cavities_left']} | {share:.3%} | {least:.1f} | {mean:.1f} | {front['crossing_share']:.0%} | "
             f"{run.seconds:.1f} | {verdict} |")
 

@@ -45,8 +45,8 @@ def find_sections(path: Path, names: set[bytes]) -> dict[bytes, tuple[int, int]]
     return sections
 
 
-def read_medit(path: Path, cells: bytes, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 3) and cells (m, nodes) from 0. `cells`: b"Tetrahedra" or b"Triangles"."""
+def read_medit(path: Path, cells: bytes, nodes: int, dimension: int = 3) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, dimension) and cells (m, nodes) from 0. `cells`: b"Tetrahedra" or b"Triangles"."""
     sections = find_sections(path, {b"Vertices", cells})
     with path.open("rb") as file:
 
@@ -55,7 +55,7 @@ def read_medit(path: Path, cells: bytes, nodes: int) -> tuple[np.ndarray, np.nda
             file.seek(place)
             return read_numbers(file, count * width).reshape(count, width)
 
-        points = table(b"Vertices", 4)[:, :3].copy()
+        points = table(b"Vertices", dimension + 1)[:, :dimension].copy()
         return points, (table(cells, nodes + 1)[:, :nodes] - 1).astype(np.int32)
 
 

@@ -54,6 +54,9 @@ def main() -> int:
         "triangles": len(corner),
         "area": float((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2),
     }
+    sides = np.roll(corner, -1, axis=1) - corner
+    areas = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+    facts["mean_quality"] = float((4 * 3**0.5 * areas / (sides**2).sum(axis=(1, 2))).mean())
     facts["min_angle"] = smallest_angle(grid["vertices"], grid["triangles"])
     print(json.dumps(facts))
     return 0

@@ -39,7 +39,9 @@ class Context {
   double time_limit = 0;                ///< seconds from construction, 0: none
   std::uint64_t memory_limit = 0;       ///< bytes of resident memory, 0: none
   std::uint64_t max_cells = 0;          ///< 0: none
-  std::vector<StageTime> stage_times;   ///< in the order the stages ended
+  /// What messages about limits advise, where sizes are not what decides (refinement of a grid).
+  std::string limit_advice = "ask for larger sizes (--hmax, --growth)";
+  std::vector<StageTime> stage_times;  ///< in the order the stages ended
 
   void log(LogLevel level, const std::string& message) const {
     if (on_log) on_log(level, message);

@@ -40,19 +40,19 @@ struct RefineReport {
   KernelCounts kernel;
 };
 
-/// @brief What an advancing front did (F1-F17).
+/// @brief What an advancing front did (F1-F17), in the plane or in the volume.
 struct FrontReport {
-  std::size_t faces_processed = 0;  ///< of the front, some more than once
-  std::size_t tets = 0, points = 0;
+  std::size_t sides_processed = 0;  ///< edges or faces of the front, some more than once
+  std::size_t cells = 0, points = 0;
   std::size_t rounds = 0, sweeps = 0;
-  std::size_t faces_left = 0;        ///< by the last sweep
-  std::size_t cavities = 0;          ///< closed ones that they made
-  std::size_t tets_emptied = 0;      ///< round these, to be filled anew ...
-  std::size_t tets_refilled = 0;     ///< ... by tets to one point in each
-  std::size_t cavities_left = 0;     ///< even then, closed by constrained Delaunay ...
-  std::size_t tets_of_cavities = 0;  ///< ... with so many tets
-  double crossing_share = 0;         ///< of the time of steps, in crossing tests (F12)
-  std::string gave_up;               ///< why there is no front; refinement took its place
+  std::size_t sides_left = 0;          ///< by the last sweep
+  std::size_t cavities = 0;            ///< closed ones that they made
+  std::size_t cells_emptied = 0;       ///< round these, to be filled anew ...
+  std::size_t cells_refilled = 0;      ///< ... by cells to one point in each
+  std::size_t cavities_left = 0;       ///< even then, closed by constrained Delaunay ...
+  std::size_t closed_by_delaunay = 0;  ///< ... with so many cells
+  double crossing_share = 0;           ///< of the time of steps, in crossing tests (F12)
+  std::string gave_up;                 ///< why there is no front; refinement took its place
 };
 
 /// @brief What improvement did (T5).

@@ -165,15 +165,27 @@ struct SizeOptions {
   double time = 0;                   ///< for sources that move
 };
 
+/// @brief One entry of [[planar.curve]] (D5): a line of the boundary, or in a region, given by points.
+struct PlanarCurveOptions {
+  std::string name;
+  std::string type = "spline";  ///< spline: smooth through the points; line: straight between them
+  std::vector<Point> at;        ///< z = 0
+  bool closed = false;          ///< from the last point to the first
+  std::optional<Length> h;      ///< of its pieces; absent: as the points lie apart (line: from point to point)
+};
+
 /// @brief Grids in the plane.
 struct PlanarOptions {
+  std::vector<PlanarCurveOptions> curves;  ///< beside those of the files
+  /// front: a pure advancing front; front-delaunay: its points, connected by Delaunay; delaunay: circumcentres
+  std::string method = "front-delaunay";
   std::string boundary = "keep";  ///< keep: the given points and no others; split: divided where sizes ask for it
   double min_angle = 30;          ///< degrees, goal
 };
 
 struct VolumeOptions {
   std::string method = "front-delaunay";  ///< front front-delaunay delaunay none
-  bool core = true;                 ///< a regular lattice where sizes are at their largest, far from the boundary
+  bool core = true;                       ///< a regular lattice where sizes are at their largest, far from the boundary
 };
 
 struct ImproveOptions {

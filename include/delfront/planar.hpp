@@ -77,6 +77,16 @@ struct PlanarDomain {
   InnerLoops inner_loops = InnerLoops::by_direction;
 };
 
+/// @brief Points along the cubic spline with continuous curvature through given points (D5).
+///
+/// Over the length of the chords; without curvature at open ends, smooth all round where closed. Pieces are about h
+/// long and turn by at most about 10 degrees each; the first point, and of an open curve the last, are the given ones.
+/// @param closed  the curve goes on from the last point to the first, which is not repeated
+/// @param h  length of the pieces, model units; 0: as the given points lie apart
+/// @return points of a chain, or of a loop without its first point again
+/// @throws InputError  too few points; two in a row are the same
+std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, double h);
+
 /// @brief The whole run in the plane: a domain to a grid of triangles (2-D Mesh: segments are named groups of lines).
 ///
 /// With options.planar.boundary = "keep" the boundary's points are the given ones, bit for bit, in the same order, and

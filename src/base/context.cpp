@@ -31,24 +31,21 @@ void fail_check(const char* condition, const char* file, int line) {
 void Context::check_limits() const {
   if (cancel && cancel->load(std::memory_order_relaxed)) throw Cancelled();
   if (time_limit > 0 && seconds_since_start() > time_limit)
-    throw LimitError(
-        fmt::format("stopped: the time limit of {:g} s is reached; ask for larger sizes (--hmax, --growth) or allow "
-                    "more time (--time-limit)",
-                    time_limit));
+    throw LimitError(fmt::format("stopped: the time limit of {:g} s is reached; {} or allow more time (--time-limit)",
+                                 time_limit, limit_advice));
   if (memory_limit == 0) return;
   if (const std::uint64_t held = resident_memory(); held > memory_limit)
     throw LimitError(
-        fmt::format("stopped: the memory limit of {} is passed, {} are held; ask for larger sizes (--hmax, --growth) "
-                    "or allow more memory (--memory-limit)",
-                    text_of_bytes(memory_limit), text_of_bytes(held)));
+        fmt::format("stopped: the memory limit of {} is passed, {} are held; {} or allow more memory (--memory-limit)",
+                    text_of_bytes(memory_limit), text_of_bytes(held), limit_advice));
 }
 
 void Context::check_cells(std::uint64_t cells) const {
   if (max_cells > 0 && cells > max_cells)
-    throw LimitError(fmt::format(
-        "stopped: the limit of {} cells is passed, the grid has {} so far; ask for larger sizes (--hmax, --growth) or "
-        "allow more cells (--max-cells)",
-        max_cells, cells));
+    throw LimitError(
+        fmt::format("stopped: the limit of {} cells is passed, the grid has {} so far; {} or allow more cells "
+                    "(--max-cells)",
+                    max_cells, cells, limit_advice));
 }
 
 double Context::seconds_since_start() const {

@@ -149,7 +149,8 @@ static void check_sizes(const Options& options) {
 }
 
 void check_job(const Options& options) {
-  if (options.input.files.empty()) throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
+  if (options.input.files.empty() && options.planar.curves.empty())
+    throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
   if (writes_grid(options) && options.output.files.empty())
     throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
   check_domain(options);

@@ -23,7 +23,9 @@ namespace {
 
 /// The first output's name with this ending instead of its type.
 std::string beside_output(const Options& options, const char* ending) {
-  fs::path base = options.output.files.empty() ? options.input.files.front() : options.output.files.front();
+  fs::path base = !options.output.files.empty()  ? options.output.files.front()
+                  : !options.input.files.empty() ? options.input.files.front()
+                                                 : "curves";
   if (!base.has_filename()) base = base.parent_path();
   if (options.output.files.empty()) base = base.filename();  // beside the input may be no place for us: where we are
   return (base.parent_path() / (base.stem().string() + ending)).string();

@@ -173,6 +173,11 @@ std::vector<OptionRow> build_table() {
   add(text_row("planar.boundary", "--boundary", "keep|split",
                "grids in the plane: keep the given boundary points and no others, or split segments by size",
                [](auto& o) -> auto& { return o.planar.boundary; }, {"keep", "split"}));
+  add(text_row(
+      "planar.method", "", "",
+      "how the plane is gridded: by an advancing front; by the points of a front, connected by Delaunay; or by "
+      "Delaunay with points at the centres of circles",
+      [](auto& o) -> auto& { return o.planar.method; }, {"front-delaunay", "front", "delaunay"}));
   add(number_row(
       "planar.min_angle", "", "", "grids in the plane: smallest angle to work towards", "degrees from 0 to 40", 0, 40,
       [](auto& o) -> auto& { return o.planar.min_angle; }));
@@ -271,10 +276,44 @@ static EntryTable boundary_table() {
   return table;
 }
 
+static EntryTable curve_table() {
+  using C = PlanarCurveOptions;
+  const auto curves = [](auto& o) -> auto& { return o.planar.curves; };
+  static const std::vector<std::string> types = {"spline", "line"};
+  EntryTable table = list_table<C>("planar.curve", curves);
+  add_entry<C>(
+      table, curves, {"name", Takes::text, "its name in the grid", "a text"},
+      [](C& c, const JobValue& v) { c.name = as_text(v); }, [](const C& c) { return text_value(c.name); });
+  add_entry<C>(
+      table, curves, {"type", Takes::text, "smooth through its points, or straight between them", "spline or line"},
+      [](C& c, const JobValue& v) { c.type = as_choice(v, types); }, [](const C& c) { return text_value(c.type); });
+  add_entry<C>(
+      table, curves, {"at", Takes::numbers, "its points", "points [[x, y], ...]"},
+      [](C& c, const JobValue& v) { c.at = as_points(v); },
+      [](const C& c) {
+        JobValue list = JobValue::list();
+        for (const Point& p : c.at) list.items.push_back(point_value(p));
+        return c.at.empty() ? JobValue() : list;
+      });
+  add_entry<C>(
+      table, curves, {"closed", Takes::boolean, "from the last point to the first", "true or false"},
+      [](C& c, const JobValue& v) {
+        if (!v.is(JobValue::Kind::boolean)) throw BadValue("got " + describe(v));
+        c.closed = v.boolean;
+      },
+      [](const C& c) { return JobValue::of(c.closed); });
+  add_entry<C>(
+      table, curves, {"h", Takes::length, "length of its pieces; by default as the points lie apart", kLengthAllowed},
+      [](C& c, const JobValue& v) { c.h = as_length(v); },
+      [](const C& c) { return c.h ? length_value(*c.h) : JobValue(); });
+  return table;
+}
+
 const std::vector<EntryTable>& entry_tables() {
   static const std::vector<EntryTable> tables = [] {
     std::vector<EntryTable> all = size_entry_tables();
     all.push_back(boundary_table());
+    all.push_back(curve_table());
     return all;
   }();
   return tables;

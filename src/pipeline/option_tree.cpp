@@ -344,10 +344,17 @@ std::string did_you_mean(const std::string& typed, const std::vector<std::string
 std::string planned_note(const std::string& key_or_flag) {
   // Words of the documented interface whose parts are not built yet: said plainly instead of "unknown".
   static const std::set<std::string> planned = {
-      "input.heal", "domain.keep.seeds", "boundaries.*.select.id",
-      "layers",     "surface",           "volume.elements",
-      "--heal",     "--layers",          "refine",
-      "adapt",      "partition",         "view",
+      "input.heal",
+      "domain.keep.seeds",
+      "boundaries.*.select.id",
+      "layers",
+      "surface",
+      "volume.elements",
+      "--heal",
+      "--layers",
+      "adapt",
+      "partition",
+      "view",
   };
   for (const std::string& known : planned)
     if (key_or_flag == known || key_or_flag.starts_with(known + ".")) return ": not in this version of delfront";

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "delfront/io.hpp"
 #include "pipeline/boundaries.hpp"
 #include "pipeline/option_table.hpp"
+#include "pipeline/quantities.hpp"
 #include "planar/far_field.hpp"
 
 namespace delfront {
@@ -32,6 +34,40 @@ CurveId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, PlanarD
   for (std::size_t i = 0; i < domain.segments.size(); ++i)
     domain.curve_of_segment[i] = CurveId(stand_in.patch_of_triangle[TriangleId(i)].index());
   return patch.is_valid() ? CurveId(patch.index()) : CurveId();
+}
+
+/// Straight pieces, divided evenly where a length is given.
+std::vector<Point2> divide_line(const std::vector<Point2>& through, bool closed, double h) {
+  std::vector<Point2> points;
+  const std::size_t pieces = through.size() - (closed ? 0 : 1);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const Point2 a = through[i], b = through[(i + 1) % through.size()];
+    const double parts = h > 0 ? std::max(1.0, std::round(std::hypot(b.x - a.x, b.y - a.y) / h)) : 1;
+    for (double k = 0; k < parts; ++k) points.push_back({a.x + k / parts * (b.x - a.x), a.y + k / parts * (b.y - a.y)});
+  }
+  if (!closed) points.push_back(through.back());
+  return points;
+}
+
+Mesh mesh_of_curve(const PlanarCurveOptions& curve, const LengthScale& scale) {
+  std::vector<Point2> through;
+  for (const Point& p : curve.at) {
+    if (p.z != 0) throw UsageError("at: a curve lies in the plane z = 0");
+    through.push_back({p.x, p.y});
+  }
+  const double h = curve.h ? resolve_length(*curve.h, scale) : 0;
+  std::vector<Point2> points = sample_spline(through, curve.closed, h);
+  if (curve.type == "line") points = divide_line(through, curve.closed, h);
+  Mesh mesh;
+  mesh.dimension = 2;
+  for (const Point2 p : points) mesh.points.push_back({p.x, p.y, 0});
+  CellBlock& lines = mesh.block(CellType::line);
+  const std::size_t pieces = points.size() - (curve.closed ? 0 : 1);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    lines.vertices.push_back(VertexId(i));
+    lines.vertices.push_back(VertexId((i + 1) % points.size()));
+  }
+  return mesh;
 }
 
 }  // namespace
@@ -61,6 +97,25 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
                       "give the outer curve the kind farfield ([boundaries.NAME])");
   }
   return far_field;
+}
+
+std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs) {
+  Box box;
+  for (const NamedMesh& input : inputs)
+    for (const Point& p : input.mesh.points) box.add(p);
+  for (const PlanarCurveOptions& curve : options.planar.curves)
+    for (const Point& p : curve.at) box.add(p);
+  const LengthScale scale{box.diagonal(), box.longest_side(), metres_per_unit(options.input.units)};
+  std::vector<NamedMesh> result;
+  for (std::size_t i = 0; i < options.planar.curves.size(); ++i) {
+    const PlanarCurveOptions& curve = options.planar.curves[i];
+    try {
+      result.push_back({mesh_of_curve(curve, scale), curve.name.empty() ? fmt::format("curve_{}", i + 1) : curve.name});
+    } catch (const Error& e) {
+      throw usage_error(options, fmt::format("planar.curve[{}]", i), e.what());
+    }
+  }
+  return result;
 }
 
 void check_planar_outputs(const Options& options) {

@@ -16,6 +16,11 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
 /// @throws UsageError
 void check_planar_outputs(const Options& options);
 
+/// @brief The curves of [[planar.curve]] as meshes of lines, to stand beside those of the files.
+/// @param inputs  what the files hold: lengths in % and c are of the box of all
+/// @throws UsageError  a curve that cannot be, with the place of its entry
+std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs);
+
 /// @brief generate_planar, knowing the far field by its kind whatever kind the job gives it in the grid.
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options,
                               const std::shared_ptr<const SizeField>& sizes, Context& context);

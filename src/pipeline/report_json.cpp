@@ -119,17 +119,17 @@ Json to_json(const RefineReport& r) {
 }
 
 Json to_json(const FrontReport& r) {
-  return {{"faces_processed", r.faces_processed},
-          {"tets", r.tets},
+  return {{"sides_processed", r.sides_processed},
+          {"cells", r.cells},
           {"points", r.points},
           {"rounds", r.rounds},
           {"sweeps", r.sweeps},
-          {"faces_left", r.faces_left},
+          {"sides_left", r.sides_left},
           {"cavities", r.cavities},
-          {"tets_emptied", r.tets_emptied},
-          {"tets_refilled", r.tets_refilled},
+          {"cells_emptied", r.cells_emptied},
+          {"cells_refilled", r.cells_refilled},
           {"cavities_left", r.cavities_left},
-          {"tets_of_cavities", r.tets_of_cavities},
+          {"closed_by_delaunay", r.closed_by_delaunay},
           {"crossing_share", number(r.crossing_share)},
           {"gave_up", r.gave_up}};
 }

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <vector>
 
+#include "planar/front.hpp"
 #include "planar/improve.hpp"
 #include "planar/kernel.hpp"
 #include "planar/prepare.hpp"
 #include "planar/refine.hpp"
+#include "planar/smooth.hpp"
 #include "planar/split.hpp"
 #include "planar/to_mesh.hpp"
 #include "sizing/asked_sizes.hpp"
@@ -19,6 +21,7 @@ namespace delfront {
 
 namespace {
 
+constexpr double kHigherGoal = 1.1;   ///< angles worked for after a front, of those asked for
 constexpr double kLargest = 0x1p100;  ///< of a coordinate, as the predicates want
 
 void check_domain(const PlanarDomain& domain) {
@@ -130,6 +133,50 @@ void warn_of_long_segments(PlanarGrid& grid, const SizeOptions& options, const S
                     found.count, found.length, found.size, found.at.x, found.at.y));
 }
 
+/// Only the front makes stretched triangles; the other methods use the least size over all directions.
+bool is_stretched(const Options& options, const SizeField& size) {
+  return options.planar.method == "front" && !size.is_isotropic();
+}
+
+PointPlacement placement_of(const std::string& method) {
+  return method == "delaunay" ? PointPlacement::circumcentres : PointPlacement::frontal;
+}
+
+/// One part of improvement after another: counts are added, the worst angle before is the first's.
+void add_up(const ImproveReport& part, ImproveReport& all) {
+  const ImproveReport before = all;
+  all = part;
+  all.passes += before.passes;
+  all.edge_swaps += before.edge_swaps;
+  all.points_moved += before.points_moved;
+  all.points_removed += before.points_removed;
+  all.points_added += before.points_added;
+  if (before.passes > 0) all.min_dihedral_before_deg = before.min_dihedral_before_deg;
+}
+
+/// What a front leaves is smoothed first, and worked on for a higher goal than asked for, since triangles just above it
+/// keep their neighbours below; triangles that are to be stretched are left alone, since angles say nothing
+/// of them.
+void improve_grid(PlanarGrid& grid, const Options& options, const SizeField& size, VertexIndex first_free,
+                  Report& report, Context& context) {
+  const bool is_front = options.planar.method == "front";
+  grid.complex.index_vertices();
+  if (!options.improve.enabled) return;
+  if (is_stretched(options, size)) {
+    grid.warnings.push_back("the sizes ask for stretched triangles: improvement, which goes by angles, was left out");
+    return;
+  }
+  PlanarImproveOptions goals{
+      .min_angle = options.planar.min_angle, .max_passes = options.improve.max_passes, .first_free = first_free};
+  if (is_front) {
+    add_up(smooth_complex(grid, {.first_free = first_free}, context), report.improve);
+    PlanarImproveOptions higher = goals;
+    higher.min_angle *= kHigherGoal;
+    add_up(improve_complex(grid, higher, context), report.improve);
+  }
+  add_up(improve_complex(grid, goals, context), report.improve);
+}
+
 }  // namespace
 
 std::vector<Finding> check_planar_domain(const PlanarDomain& domain, Context& context) {
@@ -157,8 +204,10 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
   const double largest = largest_size(measure_boundary(grid));
   prepared.size = build_size_field(grid, options.size, largest, asked, context);
   if (options.planar.boundary == "split") {
-    split_segments(grid, *prepared.size, context);
-    prepared.size = build_size_field(grid, options.size, largest, asked, context);
+    const bool in_metric = is_stretched(options, *prepared.size);
+    split_segments(grid, *prepared.size, in_metric, context);
+    // Short pieces across the direction of long triangles must not bound sizes along it.
+    if (!in_metric) prepared.size = build_size_field(grid, options.size, largest, asked, context);
   }
   if (options.planar.boundary == "keep") warn_of_long_segments(grid, options.size, asked.get(), context);
   set_vertex_sizes(grid.complex, *prepared.size, context);
@@ -171,15 +220,11 @@ Outcome generate_planar(const PlanarDomain& domain, const Options& options, Cont
   Outcome outcome;
   Report& report = outcome.report;
   auto [grid, size] = prepare_planar(domain, options, asked, context);
-  report.refine = refine_complex(grid, *size, context);
-  if (options.improve.enabled)
-    report.improve = improve_complex(grid,
-                                     {.min_angle = options.planar.min_angle,
-                                      .max_passes = options.improve.max_passes,
-                                      .first_free = static_cast<VertexIndex>(domain.points.size())},
-                                     context);
+  if (options.planar.method == "front")
+    report.front = fill_by_front(grid, *size, context);
   else
-    grid.complex.index_vertices();
+    report.refine = refine_complex(grid, *size, context, placement_of(options.planar.method));
+  improve_grid(grid, options, *size, static_cast<VertexIndex>(domain.points.size()), report, context);
   report.warnings = grid.warnings;
   outcome.mesh = to_mesh(grid, domain);
   if (options.output.sizes) add_size_field(outcome.mesh, *size, context);

@@ -10,6 +10,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/hilbert.hpp"
+
 namespace delfront {
 
 namespace {
@@ -43,8 +45,14 @@ struct Proposal {
 
 class Refinement {
  public:
-  Refinement(PlanarGrid& grid, const SizeField& size, Context& context)
-      : grid_(grid), c_(grid.complex), size_(size), context_(context), kernel_(c_) {}
+  Refinement(PlanarGrid& grid, const SizeField& size, PointPlacement placement, Context& context)
+      : grid_(grid),
+        c_(grid.complex),
+        size_(size),
+        placement_(placement),
+        context_(context),
+        kernel_(c_),
+        curve_(c_.point) {}
 
   RefineReport run() {
     set_floors();
@@ -55,14 +63,15 @@ class Refinement {
       c_.tri[t].flags = (c_.tri[t].flags & kEdgeBits) | queued;
       fresh_.push_back(t);
     }
-    for (bool is_frontal = true;;) {
+    const bool has_front = placement_ == PointPlacement::frontal;
+    for (bool is_frontal = has_front;;) {
       collect_candidates();
       propose(is_frontal);
       ask_sizes();
       const std::size_t inserted = insert();
       ++report_.rounds;
       if (inserted > 0) {
-        is_frontal = true;  // the front goes on from there
+        is_frontal = has_front;  // the front goes on from there
         continue;
       }
       if (!is_frontal) break;
@@ -144,7 +153,18 @@ class Refinement {
                               kFloorDecay / 3 * (floor_[s.node[0]] + floor_[s.node[1]] + floor_[s.node[2]]), kNoTri,
                               refused_circumcentre, s.region});
     }
+    if (placement_ == PointPlacement::circumcentres) sort_along_curve();
     report_.candidates += proposals_.size();
+  }
+
+  /// Without a front the order of the last round soon follows nothing.
+  void sort_along_curve() {
+    keys_.clear();
+    for (const Proposal& p : proposals_) keys_.push_back({curve_.key(p.at), static_cast<std::uint32_t>(keys_.size())});
+    radix_sort(keys_);
+    sorted_.clear();
+    for (const auto& [key, i] : keys_) sorted_.push_back(proposals_[i]);
+    proposals_.swap(sorted_);
   }
 
   /// Over the shortest edge of the front.
@@ -234,12 +254,15 @@ class Refinement {
   PlanarGrid& grid_;
   TriComplex& c_;
   const SizeField& size_;
+  PointPlacement placement_;
   Context& context_;
   PlanarKernel kernel_;
   RefineReport report_;
   std::vector<TriIndex> fresh_;  ///< made since the last round; some more than once
   std::vector<TriIndex> candidates_;
-  std::vector<Proposal> proposals_;
+  std::vector<Proposal> proposals_, sorted_;
+  HilbertCurve2 curve_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys_;
   std::vector<Point> places_;
   std::vector<double> sizes_;
   std::vector<double> floor_;  ///< by vertex: no smaller size there, 0 for none
@@ -247,9 +270,10 @@ class Refinement {
 
 }  // namespace
 
-RefineReport refine_complex(PlanarGrid& grid, const SizeField& size, Context& context, PlanarCounts* counts) {
+RefineReport refine_complex(PlanarGrid& grid, const SizeField& size, Context& context, PointPlacement placement,
+                            PlanarCounts* counts) {
   const StageTimer timer(context, "refine");
-  Refinement refinement(grid, size, context);
+  Refinement refinement(grid, size, placement, context);
   const RefineReport report = refinement.run();
   if (counts) *counts = refinement.counts();
   return report;

@@ -18,11 +18,12 @@ constexpr std::size_t kPiecesPerCancelCheck = 256;
 
 class Splitting {
  public:
-  Splitting(PlanarGrid& grid, const SizeField& size, Context& context)
-      : grid_(grid), c_(grid.complex), size_(size), context_(context) {}
+  Splitting(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context)
+      : grid_(grid), c_(grid.complex), size_(size), in_metric_(in_metric), context_(context) {}
 
   std::size_t run() {
     split_by_size();
+    if (in_metric_) return count_;  // circles say nothing of stretched triangles
     find_acute_corners();
     split_encroached();
     return count_;
@@ -45,7 +46,10 @@ class Splitting {
       const Point2 p = a + (static_cast<double>(k) / (kSamples - 1)) * along;
       places[k] = {p.x, p.y, 0};
     }
-    size_.sizes(places, sizes);
+    if (in_metric_)
+      sizes_along(along, places, sizes);
+    else
+      size_.sizes(places, sizes);
     const double step = std::sqrt(squared_length(along)) / (kSamples - 1);
     sum[0] = 0;
     for (std::size_t k = 1; k < kSamples; ++k) sum[k] = sum[k - 1] + 0.5 * step * (1 / sizes[k - 1] + 1 / sizes[k]);
@@ -58,6 +62,14 @@ class Splitting {
       result.push_back((static_cast<double>(k - 1) + share) / (kSamples - 1));
     }
     return result;
+  }
+
+  /// Wanted lengths in one direction.
+  void sizes_along(Point2 along, const std::array<Point, kSamples>& places, std::array<double, kSamples>& sizes) const {
+    std::array<Metric, kSamples> metrics;
+    size_.metrics(places, metrics);
+    const double length = std::sqrt(squared_length(along));
+    for (std::size_t k = 0; k < kSamples; ++k) sizes[k] = length / length_in(metrics[k], {along.x, along.y, 0});
   }
 
   void split_by_size() {
@@ -167,6 +179,7 @@ class Splitting {
   PlanarGrid& grid_;
   TriComplex& c_;
   const SizeField& size_;
+  bool in_metric_;
   Context& context_;
   std::vector<bool> is_acute_;
   std::vector<EdgeRef> edges_;
@@ -175,9 +188,9 @@ class Splitting {
 
 }  // namespace
 
-std::size_t split_segments(PlanarGrid& grid, const SizeField& size, Context& context) {
+std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context) {
   const StageTimer timer(context, "split");
-  return Splitting(grid, size, context).run();
+  return Splitting(grid, size, in_metric, context).run();
 }
 
 }  // namespace delfront

@@ -11,8 +11,9 @@ namespace delfront {
 /// in the circle over them, though not below a tenth of the size. Points are rounded; that the triangles beside the
 /// piece stay positive is decided exactly, and a piece where they would not is left as it is. At a corner under 60
 /// degrees the halves meet at powers of two of the distance on both sides, so that halving there ends.
+/// @param in_metric  lengths are those of the field's metric, and only they count: for triangles that are stretched
 /// @return points put on segments
 /// @par Source  concentric shells: Ruppert (1995)
-std::size_t split_segments(PlanarGrid& grid, const SizeField& size, Context& context);
+std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context);
 
 }  // namespace delfront

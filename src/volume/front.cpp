@@ -22,13 +22,15 @@ namespace {
 
 /// Sweep by sweep less is asked for (F17).
 constexpr FrontSettings kSweeps[] = {
-    {.radius = 1.25, .quality = 0.01, .wedge = 0.03, .clearance = 0.1, .to_points = 0.7, .to_faces = 0.45},
+    {.radius = 1.25, .quality = 0.01, .wedge = 0.06, .clearance = 0.05, .to_points = 0.6, .to_faces = 0.45},
     {.radius = 1.6, .quality = 0.01, .wedge = 0.001, .clearance = 0.0, .to_points = 0.4, .to_faces = 0.2},
     {.radius = 2.5, .quality = 1e-12, .wedge = 0, .clearance = 0, .to_points = 0.2, .to_faces = 0.05, .is_local = true},
 };
 constexpr double kSmallest = 1.5;        ///< a round takes faces up to that times the smallest
 constexpr std::uint16_t kMostTries = 3;  ///< of a face in a sweep
-constexpr std::size_t kFacesPerSlab = 3000, kMostSlabs = 64;
+constexpr std::size_t kFacesPerSlab = 1000, kMostSlabs = 64;
+constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may leave to the next cuts, about
+constexpr double kWorthSlabs = 0.15;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
 constexpr int kPhases = 4;  ///< three axes, then one piece
 
@@ -50,7 +52,7 @@ class Front {
       keep_live(waiting_);
       for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
     }
-    report_.faces_left = waiting_.size();
+    report_.sides_left = waiting_.size();
     const auto left = fill_cavities(front_, waiting_, report_, context_);
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     front_.join();
@@ -63,7 +65,9 @@ class Front {
     while (choose_faces()) {
       context_.progress("front", c_.num_live(), 0, "cells");
       context_.check_cells(c_.num_live());
-      for (int phase = 0; phase < kPhases && !active_.empty(); ++phase) run_phase(phase);
+      const auto few = static_cast<std::size_t>(kWorthSlabs * static_cast<double>(active_.size()));
+      for (int phase = 0; phase < kPhases && !active_.empty(); ++phase)
+        run_phase(phase > 0 && active_.size() <= few ? kPhases - 1 : phase);
       ++report_.rounds;
     }
   }
@@ -107,11 +111,18 @@ class Front {
     return (1.0 / 3) * (c_.point(n[0]) + c_.point(n[1]) + c_.point(n[2]));
   }
 
-  /// Cuts where as many faces lie on either side.
+  /// Cuts where as many faces lie on either side, no more than leave most faces to one slab.
   std::vector<FrontSlab> cut_slabs(int axis, bool is_last) const {
-    const std::size_t count = is_last ? 1 : std::clamp<std::size_t>(active_.size() / kFacesPerSlab, 1, kMostSlabs);
     std::vector<double> at;
-    for (const std::uint32_t f : active_) at.push_back(middle(f)[axis]);
+    double reach = 0;
+    for (const std::uint32_t f : active_) {
+      at.push_back(middle(f)[axis]);
+      reach += 2 * settings_->radius * static_cast<double>(front_.face(f).size);
+    }
+    const auto [low, high] = std::minmax_element(at.begin(), at.end());
+    const double cuts = kMostDeferred * (*high - *low) * static_cast<double>(at.size()) / (2 * reach);
+    const auto most = static_cast<std::size_t>(std::clamp(cuts, 0.0, static_cast<double>(kMostSlabs - 1)));
+    const std::size_t count = is_last ? 1 : 1 + std::min(active_.size() / kFacesPerSlab, most);
     std::vector<FrontSlab> slabs(1);
     slabs[0].axis = axis;
     for (std::size_t i = 1; i < count; ++i) {
@@ -188,8 +199,8 @@ class Front {
   }
 
   void fill_report() {
-    report_.faces_processed = counts_.steps;
-    report_.tets = counts_.tets;
+    report_.sides_processed = counts_.steps;
+    report_.cells = counts_.tets;
     report_.points += counts_.points;
     report_.crossing_share = counts_.step_seconds > 0 ? counts_.test_seconds / counts_.step_seconds : 0;
     const auto a_step = [&](std::uint64_t n) {

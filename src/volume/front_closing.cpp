@@ -79,7 +79,7 @@ class CavityFiller {
 
   void put_back() {
     FrontStock stock = front_.take(emptied_.size());
-    report_.tets_emptied -= emptied_.size();
+    report_.cells_emptied -= emptied_.size();
     made_.clear();
     for (; !emptied_.empty(); emptied_.pop_back()) {
       const auto& [n, region] = emptied_.back();
@@ -170,7 +170,7 @@ class CavityFiller {
         tree_.insert(v, {at.x, at.y, at.z}, 0);
       }
     faces_to_see.insert(faces_to_see.end(), made_.begin(), made_.end());
-    report_.tets_emptied += emptied;
+    report_.cells_emptied += emptied;
     return emptied;
   }
 
@@ -224,7 +224,7 @@ class CavityFiller {
     FrontStock stock = front_.take(faces_.size());
     made_.clear();
     for (const std::uint32_t f : faces_)
-      if (front_.face(f).is_alive) ++report_.tets_refilled, front_.add_tet(f, apex, stock, made_);
+      if (front_.face(f).is_alive) ++report_.cells_refilled, front_.add_tet(f, apex, stock, made_);
     front_.give(stock);
   }
 
@@ -341,7 +341,7 @@ void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, Fr
     cavity.vertex.push_back(own);
     front.add_vertex();
   }
-  report.tets_of_cavities += front.add_tets(from, cavity.vertex);
+  report.closed_by_delaunay += front.add_tets(from, cavity.vertex);
 }
 
 }  // namespace

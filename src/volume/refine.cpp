@@ -73,8 +73,12 @@ class Recent {
 
 class Refinement {
  public:
-  Refinement(TetComplex& complex, const SizeField& size, Context& context)
-      : c_(complex), size_(size), context_(context), curve_{curve_over(complex, 0), curve_over(complex, 1)} {}
+  Refinement(TetComplex& complex, const SizeField& size, bool is_frontal, Context& context)
+      : c_(complex),
+        size_(size),
+        is_frontal_(is_frontal),
+        context_(context),
+        curve_{curve_over(complex, 0), curve_over(complex, 1)} {}
 
   RefineReport run() {
     state_.assign(c_.num_slots(), queued);
@@ -82,7 +86,7 @@ class Refinement {
     for (auto& key : key_) key.resize(c_.num_vertices());
     for (VertexIndex v = 0; v < c_.num_vertices(); ++v) set_keys(v);
     run_front();
-    // What the front could not reach: circumcentres; where those lie behind the boundary: centroids.
+    // What the front could not reach (all, without one): circumcentres; where those lie behind the boundary: centroids.
     fill_gaps(Placement::circumcentre);
     fill_gaps(Placement::centroid);
     return report_;
@@ -114,7 +118,7 @@ class Refinement {
   std::size_t curve_of_round() const { return report_.rounds % kCurves; }
 
   void run_front() {
-    while (run_round(Placement::over_face) > 0 || num_left_ > 0) {
+    while (is_frontal_ && (run_round(Placement::over_face) > 0 || num_left_ > 0)) {
     }
   }
 
@@ -379,6 +383,7 @@ class Refinement {
 
   TetComplex& c_;
   const SizeField& size_;
+  const bool is_frontal_;
   Context& context_;
   std::array<HilbertCurve, kCurves> curve_;
   std::array<FlatArray<std::uint32_t>, kCurves> key_;  ///< by vertex: the upper half of its place along each curve
@@ -400,8 +405,9 @@ RefineReport refine_complex(TetComplex& complex, const SizeField& size, const Vo
                             Context& context) {
   const StageTimer timer(context, "refine");
   KernelCounts counts;
-  const std::size_t in_core = options.core ? fill_core(complex, size, counts, context) : 0;
-  RefineReport report = Refinement(complex, size, context).run();
+  const bool is_frontal = options.method != "delaunay";
+  const std::size_t in_core = options.core && is_frontal ? fill_core(complex, size, counts, context) : 0;
+  RefineReport report = Refinement(complex, size, is_frontal, context).run();
   report.points_in_core = in_core;
   report.points_inserted += in_core;
   add_counts(report.kernel, counts);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Grids in the plane: airfoil sections in a far field, a job file with holes, regions and sizes, what is refused."""
+import itertools
 import math
 import subprocess
 import sys
@@ -109,15 +110,44 @@ class PlanarJob(case.Case):
             self.assertIn(f"MARKER_TAG= {name}", text)
 
 
+    def test_the_example_with_splines(self):
+        self.write("job.toml", (case.ROOT / "examples" / "plane" / "ellipse_in_channel.toml").read_text())
+        self.expect(0, "mesh", "job.toml", "--report", "r.json", "--require", "min_angle > 30")
+        report = self.report("r.json")
+        # A spline through the ends of the axes is not quite the ellipse, whose area is pi 0.5 0.2.
+        self.assertAlmostEqual(12 - report["quality"]["volume"], math.pi * 0.1, delta=0.03)
+        self.assertEqual(report["front"]["closed_by_delaunay"], 0)
+        text = (self.folder / "ellipse_in_channel.su2").read_text()
+        for name in ("body", "channel"):
+            self.assertIn(f"MARKER_TAG= {name}", text)
+
+    def test_curves_that_cannot_be_are_refused_with_their_place(self):
+        for entry, says in (("at = [[0, 0]]", "at least 2 points"), ("at = [[0, 0], [0, 0], [1, 1]]", "the same"),
+                            ("at = [[0, 0, 1], [1, 0, 1]]", "plane"), ("at = [[0, 0], [1, 1]]\nclosed = true", "3 points")):
+            with self.subTest(entry):
+                self.write("job.toml", f"[[planar.curve]]\n{entry}\n[output]\nfiles = ['c.vtu']\n")
+                self.expect(2, "mesh", "job.toml", says=[says, "planar.curve"])
+
+    def test_each_method_grids_the_same_domain(self):
+        self.write("square.poly", SQUARE)
+        for method in ("front", "front-delaunay", "delaunay"):
+            with self.subTest(method):
+                self.expect(0, "mesh", "square.poly", "-o", "c.vtu", "--boundary", "split", "--hmax", "0.05", "--report",
+                            "r.json", "--set", f"planar.method={method}", "--require", "min_angle > 29.9")
+                self.assertAlmostEqual(self.report("r.json")["quality"]["volume"], 1, 12)
+        self.expect(2, "mesh", "square.poly", "-o", "c.vtu", "--set", "planar.method=ruppert", says="front-delaunay")
+
+
 class IndependentCheck(case.Case):
     def test_sections(self):
         if not CHECKER.exists() or subprocess.run(["/usr/bin/python3", "-c", "import meshio, scipy"],
                                                   capture_output=True).returncode:
             self.skipTest("the checker, or meshio, is not here")
-        for name in ("naca0012", "rae2822", "s1223"):
-            with self.subTest(name):
+        for name, method in itertools.product(("naca0012", "rae2822", "s1223"), ("front", "front-delaunay", "delaunay")):
+            with self.subTest(name, method=method):
                 path = self.shared(f"airfoil/{name}.dat")
-                self.expect(0, "mesh", path, "-o", "c.vtu", "--farfield", "circle:50c", "--require", "min_angle > 25")
+                self.expect(0, "mesh", path, "-o", "c.vtu", "--farfield", "circle:50c", "--require", "min_angle > 25",
+                            "--set", f"planar.method={method}")
                 checked = subprocess.run(["/usr/bin/python3", CHECKER, self.folder / "c.vtu"], capture_output=True, text=True)
                 self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
 

@@ -156,6 +156,18 @@ class WholeRuns(unittest.TestCase):
         again = bench("compare_peers.py", "--tables", *where)
         self.assertEqual((again.returncode, self.page.read_text()), (0, page), again.stderr)
 
+    def test_refinement_beside_gmsh_on_a_small_ball(self):
+        done = bench("refine_grid.py", "--delfront", DELFRONT, "--tets", "5e3", "--repeat", "1", "--threads", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [[word.strip() for word in line.split("|")[1:-1]] for line in done.stdout.splitlines() if line[:1] == "|"]
+        ours = [row for row in rows if row[1].startswith("delfront")]
+        self.assertEqual(len(ours), 2, done.stdout)
+        for row in ours:
+            self.assertGreater(float(row[2]), 0)
+            self.assertLess(float(row[3]), float(row[5]))
+        for row in rows:
+            self.assertNotIn("tets)", row[1])  # Gmsh makes as many as we do
+
     def test_the_stage_table_adds_up(self):
         done = bench("stage_breakdown.py", "--delfront", DELFRONT, "--tets", "1e4", "--points", "1e4", "--threads", "1")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -307,6 +307,7 @@ Options unusual_options() {
       {"size.adaptive.refine_above", "2"},
       {"size.adaptive.smooth", "true"},
       {"planar.boundary", "split"},
+      {"planar.method", "front"},
       {"planar.min_angle", "25"},
       {"volume.method", "none"},
       {"volume.core", "false"},
@@ -342,6 +343,10 @@ Options unusual_options() {
       o, "size.box",
       "[{ min = [0, 0, 0], max = [1, 1, 2], h = '5%' }, { shape = 'cone', from = [0, 0, 0], to = [0, 0, 1], radius "
       "= 1, radius_to = 0.25, centre = [0, 0, 9], file = '/x.stl', h = 1 }]");
+  set_option(
+      o, "planar.curve",
+      "[{ name = 'wing', at = [[0, 0], [1, 0.1], [0.5, 1]], closed = true, h = '1%' }, { type = 'line', at = [[0, "
+      "0], [1, 2]] }]");
   o.boundaries.push_back({"two words.", "", "inlet"});
   return o;
 }

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// delfront refine: every edge of a grid halved, with new boundary points on the true geometry.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "delfront/errors.hpp"
+#include "delfront/io.hpp"
+#include "delfront/refine_grid.hpp"
+#include "delfront/version.hpp"
+#include "pipeline/option_table.hpp"
+#include "pipeline/report_json.hpp"
+
+namespace delfront::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kFooter =
+    "Tetrahedra, hexahedra and prisms become 8, pyramids 6 and 4 tetrahedra, triangles and quads 4. Names, kinds and\n"
+    "fields come along. With --geometry new boundary points are put on the facets of the patch that is called like\n"
+    "theirs (on all, where no name is the same), those of edges on its feature edges; where a cell would be inverted\n"
+    "they go back, and the report lists them.\n"
+    "Examples:\n"
+    "  delfront refine wing.vtu -o fine.vtu --levels 1 --geometry wing.stl\n"
+    "  delfront refine body.msh -o case/ --levels 2 --report refined.json\n"
+    "  delfront refine naca0012.su2 -o fine.su2 --geometry naca0012.dat";
+
+/// Limits are read as those of jobs are.
+const std::vector<std::string> kLimits = {"limits.time", "limits.memory", "limits.max_cells"};
+
+class RefineCommand : public Command {
+ public:
+  explicit RefineCommand(CLI::App& parent) {
+    app = parent.add_subcommand("refine", "Halve every edge of a grid, with new boundary points on the true geometry");
+    app->allow_extras();
+    app->footer(kFooter);
+    app->add_option("IN", in_, "grid to refine, or folder of an OpenFOAM case")->required();
+    app->add_option("-o,--output", outputs_, "grid to write, repeatable; a name ending in / is an OpenFOAM case")
+        ->type_name("OUT")
+        ->expected(1)
+        ->take_all()
+        ->allow_extra_args(false)
+        ->required();
+    app->add_option("--levels", options_.levels, "times every edge is halved; by default once")->type_name("N");
+    app->add_option("--geometry", geometry_, "surface (in the plane: lines) on which new boundary points belong")
+        ->type_name("FILE");
+    app->add_option("--feature-angle", options_.feature_angle_deg,
+                    "angle between facets from which an edge is a feature; by default 40 degrees")
+        ->type_name("DEG");
+    app->add_option("--report", report_, "what was done, as JSON; - for stdout")->type_name("FILE");
+    app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
+    app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");
+    app->add_flag("--ascii", is_ascii_, "write text instead of binary, where the format has both");
+    app->add_flag("--compress", is_compressed_, "VTU: compressed");
+    for (const OptionRow& row : option_table())
+      if (std::find(kLimits.begin(), kLimits.end(), row.key) != kLimits.end())
+        app->add_option(row.flags, limits_[row.key], row.help)->type_name(row.metavar)->group("Limits");
+    add_common_flags();
+  }
+
+  int run(const std::string& command_line) override {
+    check_words();
+    Terminal terminal = make_terminal();
+    Context context;
+    prepare(context, terminal);
+    set_limits(context);
+    const Mesh coarse = read_grid(context);
+    const Model model = geometry_.empty() ? Model() : read_geometry(coarse, context);
+    if (!geometry_.empty()) options_.model = &model;
+    RefineGridReport report;
+    const Mesh fine = refine_grid(coarse, options_, report, context);
+    check_result(fine, context);
+    const std::vector<std::string> changes = write(fine, context);
+    terminal.clear_bar();
+    for (const std::string& warning : warnings_of(report)) terminal.log(LogLevel::warning, warning);
+    for (const std::string& change : changes) terminal.log(LogLevel::warning, change);
+    if (!report_.empty()) write_json(report_, report_json(command_line, coarse, fine, report, context));
+    if (terminal.verbosity() >= 0 && report_ != "-") print(fine, report);
+    return static_cast<int>(ExitCode::done);
+  }
+
+ private:
+  void check_words() const {
+    if (options_.levels < 1)
+      throw UsageError(
+          fmt::format("--levels {}: expected how many times to halve the edges, 1 or more", options_.levels));
+    if (!(options_.feature_angle_deg >= 0 && options_.feature_angle_deg <= 180))
+      throw UsageError(fmt::format("--feature-angle {:g}: expected degrees from 0 to 180", options_.feature_angle_deg));
+    for (const std::string& out : outputs_) {
+      format_of(out, to_, true);
+      refuse_to_overwrite(out);
+      check_writable(out);
+    }
+    if (report_.empty() || report_ == "-") return;
+    refuse_to_overwrite(report_);
+    if (std::find(outputs_.begin(), outputs_.end(), report_) != outputs_.end())
+      throw UsageError(fmt::format("-o and --report name the same file, {}", report_));
+    check_writable(report_);
+  }
+
+  void refuse_to_overwrite(const std::string& out) const {
+    std::error_code ignored;
+    for (const std::string& in : {in_, geometry_})
+      if (!in.empty() && fs::equivalent(in, out, ignored))
+        throw UsageError(fmt::format("{} is an input and would be overwritten; give the output another name", out));
+  }
+
+  void set_limits(Context& context) const {
+    Options options;
+    for (const OptionRow& row : option_table()) {
+      const auto typed = limits_.find(row.key);
+      if (typed == limits_.end() || typed->second.empty()) continue;
+      apply_value(options, row.key, value_from_text(row.takes, typed->second),
+                  [&row](int) { return row.flags + ": "; });
+    }
+    context.limit_advice = "refine fewer times (--levels)";
+    context.time_limit = options.limits.time;
+    context.memory_limit = options.limits.memory;
+    context.max_cells = options.limits.max_cells;
+  }
+
+  static std::string first_error(const std::vector<Finding>& findings) {
+    for (const Finding& f : findings)
+      if (f.severity == Severity::error) return f.message;
+    return "";
+  }
+
+  Mesh read_grid(Context& context) const {
+    const StageTimer timer(context, "read");
+    Mesh mesh = read_mesh(in_, context, from_);
+    if (mesh.top_dimension() < 2)
+      throw InputError(fmt::format("{} has neither faces nor volume cells; there is no grid to refine", in_));
+    context.check_limits();
+    const std::vector<Finding> findings = check(mesh);
+    if (has_errors(findings))
+      throw InputError(fmt::format("{} is not a valid grid: {}; 'delfront check {}' shows all that is wrong", in_,
+                                   first_error(findings), in_),
+                       findings.front().places);
+    return mesh;
+  }
+
+  Model read_geometry(const Mesh& grid, Context& context) const {
+    const StageTimer timer(context, "read");
+    const std::string stem = fs::path(geometry_).stem().string();
+    Mesh geometry = read_mesh(geometry_, context);
+    if (grid.dimension == 2) {
+      if (geometry.num_cells(CellType::line) == 0)
+        throw InputError(
+            fmt::format("{} has no lines, which the geometry of a grid in the plane consists of; give "
+                        "e.g. airfoil coordinates (.dat) or lines as VTP",
+                        geometry_));
+      return model_of_lines(geometry, stem);
+    }
+    return build_model({{std::move(geometry), stem}}, context);
+  }
+
+  /// Never a bad grid under the asked name.
+  static void check_result(const Mesh& fine, Context& context) {
+    const StageTimer timer(context, "check");
+    context.progress("check", 0, 1, "grid");
+    const std::vector<Finding> findings = check(fine);
+    if (has_errors(findings))
+      throw MeshingError(fmt::format("the refined grid is not valid and was not written: {}", first_error(findings)),
+                         findings.front().places);
+    context.progress("check", 1, 1, "grid");
+  }
+
+  std::vector<std::string> write(const Mesh& fine, Context& context) const {
+    const StageTimer timer(context, "write");
+    std::vector<std::string> changes;
+    const WriteOptions how{.binary = !is_ascii_, .version = "", .compress = is_compressed_};
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      context.progress("write", i, outputs_.size(), "files");
+      for (const std::string& change : write_mesh(fine, outputs_[i], context, how, to_))
+        changes.push_back(fmt::format("{}: {}", outputs_[i], change));
+    }
+    context.progress("write", outputs_.size(), outputs_.size(), "files");
+    return changes;
+  }
+
+  std::vector<std::string> warnings_of(const RefineGridReport& report) const {
+    std::vector<std::string> warnings;
+    if (!report.groups_not_in_model.empty())
+      warnings.push_back(fmt::format("{} has nothing called {}: new points there stay in the middle of their edges",
+                                     geometry_, fmt::join(report.groups_not_in_model, ", ")));
+    if (!geometry_.empty() && report.points_on_surface + report.points_on_features == 0)
+      warnings.push_back(
+          fmt::format("no new point had to be moved: the boundary of {} is {} already, or nowhere near "
+                      "it (same units?)",
+                      in_, geometry_));
+    if (!report.reversed_places.empty()) {
+      const Point at = report.reversed_places[0].at;
+      warnings.push_back(
+          fmt::format("{} new points stand halfway between their edge and {}, {} on their edge, since "
+                      "cells would have been inverted or squashed; the first at ({:.9g}, {:.9g}, "
+                      "{:.9g}){}",
+                      report.halved, geometry_, report.reversed, at.x, at.y, at.z,
+                      report_.empty() ? "; --report FILE lists them" : ""));
+    }
+    return warnings;
+  }
+
+  std::string report_json(const std::string& command_line, const Mesh& coarse, const Mesh& fine,
+                          const RefineGridReport& report, const Context& context) const {
+    using Json = nlohmann::ordered_json;
+    const auto cells = [](const Mesh& mesh) {
+      Json json = Json::object();
+      for (const CellBlock& block : mesh.blocks) json[name_of(block.type)] = block.size();
+      return json;
+    };
+    Json stages = Json::array();
+    for (const StageTime& time : context.stage_times)
+      stages.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
+    const Json json = {{"command", command_line},
+                       {"version", kVersion},
+                       {"input", in_},
+                       {"geometry", geometry_},
+                       {"threads", context.threads},
+                       {"levels", report.levels},
+                       {"cells_before", cells(coarse)},
+                       {"cells", cells(fine)},
+                       {"num_points", report.num_points},
+                       {"points_on_surface", report.points_on_surface},
+                       {"points_on_features", report.points_on_features},
+                       {"largest_move", report.largest_move},
+                       {"halved", report.halved},
+                       {"reversed", report.reversed},
+                       {"reversed_places", to_json(report.reversed_places, kMaxPlaces)},
+                       {"groups_not_in_geometry", report.groups_not_in_model},
+                       {"stages", stages},
+                       {"seconds", context.seconds_since_start()},
+                       {"peak_memory_bytes", peak_resident_memory()},
+                       {"files_written", outputs_}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
+
+  void print(const Mesh& fine, const RefineGridReport& report) const {
+    print_mesh_facts(fine);
+    if (!geometry_.empty())
+      fmt::print(
+          "moved          {} points to the surface, {} to features, by {:.4g} at most; {} halfway, {} put back\n",
+          with_commas(report.points_on_surface), with_commas(report.points_on_features), report.largest_move,
+          with_commas(report.halved), with_commas(report.reversed));
+    fmt::print("written        {}\n", fmt::join(outputs_, ", "));
+    if (!report_.empty()) fmt::print("report         {}\n", report_);
+  }
+
+  std::string in_, geometry_, report_, from_, to_;
+  std::vector<std::string> outputs_;
+  std::map<std::string, std::string> limits_;
+  bool is_ascii_ = false, is_compressed_ = false;
+  RefineGridOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_refine_command(CLI::App& app) { return std::make_unique<RefineCommand>(app); }
+
+}  // namespace delfront::cli
