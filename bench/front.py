@@ -9,8 +9,8 @@
     bench/front.py --quick                                    does it all work: small, once
 
 Workloads: "sphere" (a surface of one size, filled), "graded" (the outside of a sphere up to a far field, sizes growing
-with the distance), "ahmed" (the example, refined); sizes are about so many tets of ours. Methods of ours: the pure front,
-front placement with Delaunay connection, circumcentres; each without improvement (raw) and with it. Peers run as
+with the distance), "ahmed" (the example, refined); sizes are about so many tets of ours. Methods of ours: the pure
+front, front placement with Delaunay connection, circumcentres; each without improvement (raw) and with it. Peers run as
 processes of their own on the same surface, in turn with ours, each up to a size of its own: Netgen's pure front and its
 Delaunay with front, Gmsh's Delaunay, TetGen (`scripts/setup --peers`); a missing one is named.
 

@@ -27,10 +27,13 @@ FAR_FIELD = 10  # half its side or its radius, in sides of the body
 NETGEN_GRADING = 0.3  # its default, for uniform sizes
 ABOUT = {
     "sphere": "geodesic unit sphere, inside, sizes of the surface",
-    "graded": f"outside of a geodesic unit sphere, far field of radius {2 * FAR_FIELD} made by delfront, growth {GROWTH}",
+    "graded": f"outside of a geodesic unit sphere, far field of radius {2 * FAR_FIELD}, growth {GROWTH}",
     "ahmed": f"air round the Ahmed body (examples/ahmed), growth {GROWTH}",
 }
-AHMED_SIZES = {1e5: 0.058, 1e6: 0.0108, 1e7: 0.0039}  # side on the body for about so many tets; 9 times that far away
+# For about so many tets, between them interpolated: Ahmed's side on the body (9 times that far away), and the sphere's
+# sides on an edge of the icosahedron.
+AHMED_SIDES = {1e5: 0.058, 1e6: 0.0108, 1e7: 0.0039}
+GRADED_SPHERES = {4e4: 3, 7e4: 5, 1.6e5: 12, 7.7e5: 38, 2.7e6: 80, 1e7: 162}
 KINDS = {"raw": ["--set", "improve.enabled=false"], "improved": []}
 
 
@@ -45,6 +48,11 @@ def words_of_case(name: str) -> list[str]:
 # --- surfaces ---------------------------------------------------------------------------------------------------------
 
 
+def interpolate(table: dict[float, float], at: float) -> float:
+    """Along lines in logarithms; the ends hold beyond."""
+    return float(np.exp(np.interp(np.log(at), np.log(list(table)), np.log(list(table.values())))))
+
+
 def make_surface(name: str, size: int, folder: Path, program: str):
     """Writes what the tools read. @return points, triangles, and the far side length of Ahmed's
     @throws NotBuilt where the surface cannot be made"""
@@ -53,14 +61,14 @@ def make_surface(name: str, size: int, folder: Path, program: str):
         shapes.write_surface(folder, *surface)
         return *surface, 0.0
     if name == "ahmed":
-        side = float(np.exp(np.interp(np.log(size), np.log(list(AHMED_SIZES)), np.log(list(AHMED_SIZES.values())))))
+        side = interpolate(AHMED_SIDES, size)
         script = peers.ROOT / "examples" / "ahmed" / "make_ahmed.py"
         command = [sys.executable, str(script), "ahmed.stl", "--size", f"{side:.6g}", "--far", f"{9 * side:.6g}"]
         run_or_say(command, folder)
         surface = shapes.read_surface(folder / "ahmed.stl")
         shapes.write_surface(folder, *surface)
         return *surface, 9 * side
-    inner = shapes.geodesic_sphere(max(3, round(20 * (size / 2.8e5) ** 0.5)))
+    inner = shapes.geodesic_sphere(round(interpolate(GRADED_SPHERES, size)))
     shapes.write_surface(folder, *inner)
     (folder / "s.off").replace(folder / "body.off")
     run_or_say([program, "mesh", *words_of_case(name), "-o", "s.off", "--stop-after", "surface", "-q"], folder)
@@ -116,7 +124,7 @@ def stages_of(folder: Path) -> dict[str, float]:
 def front_of(folder: Path) -> dict:
     """What the report says of the pure front; nothing for other methods."""
     front = json.loads((folder / "report.json").read_text()).get("front") or {}
-    return front if front.get("faces_processed") else {}
+    return front if front.get("sides_processed") else {}
 
 
 def our_details(folder: Path, log: str) -> dict:

@@ -79,14 +79,15 @@ def speed_table(case: dict) -> list[str]:
         cells = [name, threads, str(len(row["runs"])), f"{facts['tets']:,}", tables.spread(row, "phase")]
         cells += [rate_of(rate(row)), rate_of(cpu_rate(row))]
         cells += [over(median(alone, "phase"), median(row, "phase")) if alone else ""]
-        cells += [form(median(row, "improve"), "{:.2f}"), form(median(row, "whole"), "{:.2f}"), form(cpu(row), "{:.2f}")]
+        cells += [form(value, "{:.2f}") for value in (median(row, "improve"), median(row, "whole"), cpu(row))]
         lines.append([*cells, form(median(row, "rss") / facts["tets"], "{:.0f}"), remark(case, row)])
     return tables.table(head, lines)
 
 
 def quality_table(case: dict) -> list[str]:
     head = ["tool", "mean smallest °", "worst °", "largest °", "below 10°", "mean eta", "edges in [0.8, 1.25]"]
-    head += ["mean edge/size", "edges in [0.8, 1.25] of it", "crossing test", "sweeps", "cavities", "tets of cavities"]
+    head += ["mean edge/size", "edges in [0.8, 1.25] of it", "crossing test", "sweeps", "cavities"]
+    head.append("closed by Delaunay")
     lines = []
     for row in case["rows"]:
         if not row["runs"] or row["threads"] != min(r["threads"] for r in case["rows"] if r["tool"] == row["tool"]):
@@ -98,7 +99,7 @@ def quality_table(case: dict) -> list[str]:
         edges = [f"{facts['edges_near']:.1%}", f"{facts['edge_ratio']:.3f}", f"{facts['edges_alike']:.1%}"]
         cells += edges if told else [NOTHING] * 3
         cells += [form(median(row, "crossing"), "{:.1%}"), form(front.get("sweeps"), "{}")]
-        share = front["tets_of_cavities"] / facts["tets"] if front else None
+        share = front["closed_by_delaunay"] / facts["tets"] if front else None
         lines.append([*cells, form(front.get("cavities"), "{}"), form(share, "{:.4%}")])
     return tables.table(head, lines)
 
@@ -117,7 +118,8 @@ def ratios_of_speed(found: dict) -> list[str]:
                 continue
             mine, two = cpu_rate(row), find(case, row["tool"], 2, row["stamp"])
             smallest = first.setdefault((case["name"], method), mine)
-            cells = [case["name"], f"{row['facts']['tets']:,}", method, short(rate(row)), rate_of(mine), over(smallest, mine)]
+            cells = [case["name"], f"{row['facts']['tets']:,}", method, short(rate(row)), rate_of(mine)]
+            cells.append(over(smallest, mine))
             cells.append(over(median(row, "phase"), median(two, "phase")) if two else NOTHING)
             peers = ("Netgen pure front, raw", "Netgen Delaunay + front, raw", "Gmsh Delaunay", "TetGen")
             for peer in peers:
@@ -128,39 +130,42 @@ def ratios_of_speed(found: dict) -> list[str]:
     return tables.table(head, lines)
 
 
+def peer_fact(case: dict, stamp: str, start: str, kind: str, key: str) -> float | None:
+    """Of the tool whose name begins so, raw or improved, in that run."""
+    rows = [row for row in case["rows"] if row["runs"] and row["stamp"] == stamp]
+    named = [row for row in rows if row["tool"].startswith(start) and row["tool"].endswith(kind)]
+    return named[0]["facts"][key] if named else None
+
+
+def quality_cells(case: dict, method: str) -> list[str]:
+    raw, better = (find(case, f"delfront {method}, {kind}") for kind in ("raw", "improved"))
+    if not raw and not better:
+        return []
+    stamp, told = (raw or better)["stamp"], case["facts"]["has_sizes"]
+    mean = raw["facts"]["mean_min_dihedral"] if raw else None
+    cells = [case["name"], f"{(raw or better)['facts']['tets']:,}", method, form(mean, "{:.2f}")]
+    for name in ("delfront delaunay, raw", "Netgen pure front, raw", "Gmsh Delaunay"):
+        other = peer_fact(case, stamp, name, "raw", "mean_min_dihedral")
+        is_itself = name == f"delfront {method}, raw"
+        cells.append(NOTHING if None in (mean, other) or is_itself else f"{mean - other:+.2f}")
+    for name in (f"delfront {method},", "Netgen Delaunay", "Gmsh"):
+        cells.append(form(peer_fact(case, stamp, name, "improved", "min_dihedral"), "{:.2f}"))
+    for kind in ("raw", "improved"):
+        for name in (f"delfront {method},", "Gmsh"):
+            values = [peer_fact(case, stamp, name, kind, key) for key in ("edges_near", "edges_alike")]
+            is_known = None not in values and (told or name != "Gmsh")
+            cells.append(" / ".join(f"{value:.1%}" for value in values) if is_known else NOTHING)
+    return cells
+
+
 def ratios_of_quality(found: dict) -> list[str]:
-    """Means of the smallest angle less those of our circumcentres and of peers; worst angles; widths of edge lengths."""
+    """Means of the smallest angles less those of our circumcentres and of peers; worst angles; spread of edges."""
     head = ["case", "tets", "method", "mean smallest °, raw", "more than delaunay's", "more than Netgen's front's"]
     head += ["more than Gmsh's", "worst ° improved", "Netgen's worst °", "Gmsh's worst °", "edges near / alike, raw"]
     head += ["Gmsh's, raw", "edges near / alike, improved", "Gmsh's, improved"]
-    lines = []
-    for case in ordered(found):
-        told = case["facts"]["has_sizes"]
-        for method in ("front", "front-delaunay", "delaunay"):
-            raw, better = (find(case, f"delfront {method}, {kind}") for kind in ("raw", "improved"))
-            stamp = (raw or better or {"stamp": ""})["stamp"]
-
-            def fact(row: dict | None, key: str) -> float | None:
-                return row["facts"].get(key) if row else None
-
-            def peer(start: str, kind: str, key: str) -> float | None:
-                rows = [r for r in case["rows"] if r["tool"].startswith(start) and r["tool"].endswith(kind) and r["runs"]]
-                return next((r["facts"][key] for r in rows if r["stamp"] == stamp), None)
-
-            if not raw and not better:
-                continue
-            mean = fact(raw, "mean_min_dihedral")
-            cells = [case["name"], f"{(raw or better)['facts']['tets']:,}", method, form(mean, "{:.2f}")]
-            for name in ("delfront delaunay, raw", "Netgen pure front, raw", "Gmsh Delaunay"):
-                other = peer(name, "raw", "mean_min_dihedral")
-                cells.append(NOTHING if None in (mean, other) or name == f"delfront {method}, raw" else f"{mean - other:+.2f}")
-            cells.append(form(fact(better, "min_dihedral"), "{:.2f}"))
-            cells += [form(peer(name, "improved", "min_dihedral"), "{:.2f}") for name in ("Netgen Delaunay", "Gmsh")]
-            for row, kind in ((raw, "raw"), (better, "improved")):
-                for ask in (lambda key: fact(row, key), lambda key: peer("Gmsh", kind, key) if told else None):
-                    cells.append(" / ".join(form(ask(key), "{:.1%}") for key in ("edges_near", "edges_alike")))
-            lines.append(cells)
-    return tables.table(head, lines)
+    methods = ("front", "front-delaunay", "delaunay")
+    lines = [quality_cells(case, method) for case in ordered(found) for method in methods]
+    return tables.table(head, [cells for cells in lines if cells])
 
 
 def case_text(case: dict) -> list[str]:
@@ -175,16 +180,16 @@ def case_text(case: dict) -> list[str]:
 
 
 def page(found: dict, command: str, about: str) -> str:
-    lines = ["# The front in the volume, beside its peers", "", f"Made by `{command}`; not edited by hand.", "", about, ""]
-    lines += [" ".join(READING.split()), "", "## In short", "", *ratios_of_speed(found)]
-    lines += [*ratios_of_quality(found), "## All figures", ""]
+    lines = ["# The front in the volume, beside its peers", "", f"Made by `{command}`; not edited by hand.", "", about]
+    lines += ["", " ".join(READING.split()), "", "## In short", "", *ratios_of_speed(found), *ratios_of_quality(found)]
+    lines += ["## All figures", ""]
     for case in ordered(found):
         lines += case_text(case)
     return "\n".join(lines).rstrip() + "\n"
 
 
-READING = """Ratios are of tets a second of gridding in processor time, within one run; a ratio above 1 is in our favour.
-Wall times are medians with their range; a load average over the threads used means that other work ran beside. "raw": no
-improvement; "improved": with each tool's own. Peak memory is of the whole process, for Netgen with its Python. "1 thread
-/ 2" is of wall times, and means something on a quiet machine only. Edges are "near" where length over size is within
-[0.8, 1.25], "alike" where it is within that range of the grid's own mean of it."""
+READING = """Ratios are of tets a second of gridding in processor time, within one run; a ratio above 1 is in our
+favour. Wall times are medians with their range; a load average over the threads used means that other work ran beside.
+"raw": no improvement; "improved": with each tool's own. Peak memory is of the whole process, Netgen's with its Python.
+"1 thread / 2" is of wall times, and means something on a quiet machine only. Edges are "near" where length over size is
+within [0.8, 1.25], "alike" where it is within that range of the grid's own mean of it."""

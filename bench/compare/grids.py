@@ -75,7 +75,7 @@ def read_tetgen(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def measure_tets(points: np.ndarray, tets: np.ndarray) -> dict:
-    """Count, volume, worst dihedral angles, mean of the smallest of each tet, share of those below 10 degrees, mean eta.
+    """Count, volume, worst dihedral angles, mean of each tet's smallest, share of those below 10 degrees, mean eta.
 
     Orientation as the tool left it.
     """

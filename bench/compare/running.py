@@ -22,11 +22,11 @@ class Tool:
     version: str = ""
     missing: str = ""  # why it cannot be run; "" if it can
     phase: Callable[[Path, str], float | None] = lambda folder, log: None  # (folder, log) -> seconds
-    details: Callable[[Path, str], dict] = lambda folder, log: {}  # further figures of each run
     facts: Callable[[Path, str], dict] = lambda folder, log: {}  # after the first run: counts, volume, quality
     outputs: list[str] = field(default_factory=list)  # removed before each run; must be there afterwards
     extra_outputs: list[str] = field(default_factory=list)  # removed before each run
     environment: dict[str, str] = field(default_factory=dict)
+    details: Callable[[Path, str], dict] = lambda folder, log: {}  # further figures of each run
 
     def shown_command(self) -> str:
         """Without folders: what a reader would type."""

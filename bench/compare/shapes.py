@@ -171,8 +171,8 @@ def refine_to(points: np.ndarray, triangles: np.ndarray, tets: float) -> tuple[n
 def write_surface(folder: Path, points: np.ndarray, triangles: np.ndarray, parts: np.ndarray | None = None) -> None:
     """The same surface as OFF (delfront), .smesh (TetGen) and medit .mesh with a .geo (Gmsh).
 
-    `parts`: number of each triangle's closed surface, from 0: the outer one, then those of holes (of which TetGen's file
-    says nothing).
+    `parts`: number of each triangle's closed surface, from 0: the outer one, then those of holes (of which TetGen's
+    file says nothing).
     """
     n, m = len(points), len(triangles)
     parts = np.zeros(m, int) if parts is None else parts

@@ -5,7 +5,7 @@
 
 "front" is its pure front, "delaunay" its default: points inserted by Delaunay, the front closes the rest. STEPS: of its
 optimiser, 0 for none. The triangles face out of the volume. Prints one line of JSON: seconds of gridding and of
-optimising, and the tets. OUT.npz has points and tets from 0.
+optimising, and the tets; one thread. OUT.npz has points and tets from 0.
 """
 
 import json
@@ -14,6 +14,7 @@ import time
 
 import netgen.meshing as netgen
 import numpy as np
+import pyngcore
 
 
 def read_off(name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -29,6 +30,7 @@ def main() -> int:
     maxh, grading, steps = float(sys.argv[4]), float(sys.argv[5]), int(sys.argv[6])
     points, triangles = read_off(surface)
     netgen.SetMessageImportance(0)
+    pyngcore.SetNumThreads(1)
     mesh = netgen.Mesh(dim=3)
     mesh.AddPoints(points)
     face = mesh.Add(netgen.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))
