@@ -32,7 +32,7 @@ ABOUT = {
 }
 # For about so many tets, between them interpolated: Ahmed's side on the body (9 times that far away), and the sphere's
 # sides on an edge of the icosahedron.
-AHMED_SIDES = {1e5: 0.058, 1e6: 0.0108, 1e7: 0.0039}
+AHMED_SIDES = {1e5: 0.058, 1e6: 0.0101, 1e7: 0.0039}
 GRADED_SPHERES = {4e4: 3, 7e4: 5, 1.6e5: 12, 7.7e5: 38, 2.7e6: 80, 1e7: 162}
 KINDS = {"raw": ["--set", "improve.enabled=false"], "improved": []}
 
