@@ -345,7 +345,7 @@ std::string planned_note(const std::string& key_or_flag) {
   // Words of the documented interface whose parts are not built yet: said plainly instead of "unknown".
   static const std::set<std::string> planned = {
       "input.heal", "domain.keep.seeds", "boundaries.*.select.id",
-      "layers",     "surface",           "volume.elements",
+      "layers",     "surface.elements",  "volume.elements",
       "--heal",     "--layers",          "refine",
       "adapt",      "partition",         "view",
   };

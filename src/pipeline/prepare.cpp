@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "delfront/errors.hpp"
+#include "pipeline/surface_job.hpp"
 #include "sizing/asked_sizes.hpp"
 
 namespace delfront {
@@ -31,6 +32,15 @@ void refuse_invalid(const SurfaceReport& surface) {
     places.insert(places.end(), f.places.begin(), f.places.end());
   }
   throw InputError(message, std::move(places));
+}
+
+/// A new surface is looked at as a given one is.
+void regrid(Model& model, const Options& options, const SizeField* asked, Report& report, Context& context) {
+  regrid_as_asked(model, options, asked, report.surface_grid, context);
+  const std::size_t turned = report.surface.reoriented;
+  report.surface = check_surface(model, context);
+  report.surface.reoriented = turned;
+  refuse_invalid(report.surface);
 }
 
 std::vector<bool> far_field_patches(const Model& model) {
@@ -97,6 +107,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
                         Context& context) {
   report.surface = prepare_surface(model, context);
   refuse_invalid(report.surface);
+  if (options.surface.method != "keep") regrid(model, options, asked.get(), report, context);
   Prepared prepared;
   prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
   warn_of_coarse_surface(model, options.size, asked.get(), context);
