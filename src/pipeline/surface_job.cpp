@@ -65,12 +65,13 @@ void warn_of_fallbacks(const SurfaceGridReport& report, Context& context) {
       if (count++ == 0) first = &f;
     }
     if (!first) continue;
-    context.warn(fmt::format("{} of {} pieces of the surface {}: the front came to no end there (the first in '{}' at "
-                             "{:g} {:g} {:g}: {}); smaller sizes there may help",
-                             count, report.regions,
-                             kind == SurfaceFallback::Kind::kept ? "keep their given triangles"
-                                                                 : "were gridded by changing their given triangles",
-                             first->patch, first->at.x, first->at.y, first->at.z, first->why));
+    context.warn(
+        fmt::format("{} of {} pieces of the surface {}: the front came to no end there (the first in '{}' at "
+                    "{:g} {:g} {:g}: {}); smaller sizes there may help",
+                    count, report.regions,
+                    kind == SurfaceFallback::Kind::kept ? "keep their given triangles"
+                                                        : "were gridded by changing their given triangles",
+                    first->patch, first->at.x, first->at.y, first->at.z, first->why));
   }
 }
 

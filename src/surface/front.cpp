@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kBinsPerTry = 64, kTries = 5;
 constexpr double kBinsPerOctave = 4;
+constexpr std::size_t kMostSteps = 8;  ///< a triangle: 1.1 to 2 are usual
 constexpr std::size_t kCheckEvery = 4096;
 
 Point unit(Point p) { return p / length(p); }
@@ -178,6 +179,7 @@ void SurfaceFront::add_triangle(std::uint32_t s, std::uint32_t c) {
 /// F11: until the front is empty, or every side was tried with all settings since the last triangle.
 void SurfaceFront::run(const Context& context) {
   std::size_t made_at_reset = result_.triangles.size();
+  const std::size_t num_begun = num_alive_ + 100;
   while (num_alive_ > 0) {
     const std::uint32_t s = next_side();
     if (s == kNone) {
@@ -192,6 +194,7 @@ void SurfaceFront::run(const Context& context) {
     }
     if (++result_.steps % kCheckEvery == 0) context.check_limits();
     if (num_in_tree_ > 3 * num_alive_ + 1000) rebuild_tree();
+    if (result_.steps > kMostSteps * (result_.triangles.size() + num_begun)) return;  // it goes round in circles
     if (advance(s)) continue;
     if (++sides_[s].tries < kTries) queue(s);
   }

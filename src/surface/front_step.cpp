@@ -15,9 +15,10 @@ constexpr SurfaceFrontSettings kSettings[] = {
     {5, 0.005, 0.01, 0.3, 0.2, false},   // no new points: loops close
     {20, 1e-5, 1e-6, 0.3, 0.1, false},   // anything that fits
 };
-constexpr double kTaken = 0.6;     ///< existing points nearer to the ideal one are taken instead
-constexpr double kNewShare = 0.7;  ///< existing points need this share of the ideal quality
-constexpr double kFlat = 1e-9;     ///< of the side: heights in the plane that are none
+constexpr std::size_t kMostCandidates = 40;  ///< tested for crossings
+constexpr double kTaken = 0.6;               ///< existing points nearer to the ideal one are taken instead
+constexpr double kNewShare = 0.7;            ///< existing points need this share of the ideal quality
+constexpr double kFlat = 1e-9;               ///< of the side: heights in the plane that are none
 
 double cross2(const std::array<double, 2>& a, const std::array<double, 2>& b, const std::array<double, 2>& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -55,9 +56,11 @@ bool SurfaceFront::advance(std::uint32_t s) {
   look_round(s, set_->radius * wanted_);
   add_candidates(s);
   if (set_->makes_points) add_new_points(s);
-  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& p, const Candidate& q) {
-    return p.score != q.score ? p.score > q.score : p.near < q.near;
-  });
+  const std::size_t most = std::min(kMostCandidates, candidates_.size());
+  std::partial_sort(
+      candidates_.begin(), candidates_.begin() + std::ptrdiff_t(most), candidates_.end(),
+      [](const Candidate& p, const Candidate& q) { return p.score != q.score ? p.score > q.score : p.near < q.near; });
+  candidates_.resize(most);
   for (const Candidate& candidate : candidates_) {
     if (!is_free(s, candidate)) continue;
     std::uint32_t c;

@@ -11,6 +11,8 @@ namespace delfront {
 namespace {
 
 constexpr double kSamplesPerSide = 4;
+constexpr double kTurnPerSide = 3.14159265358979323846 / 3;
+constexpr double kMostForTurns = 4;           ///< times the sides that the size asks for
 constexpr std::size_t kMostSamples = 100000;  ///< on one given edge
 
 /// A line with the integral of 1 / h along it, at samples.
@@ -54,9 +56,23 @@ LinePoint place_at(const MeasuredLine& line, double sum) {
   return {from.edge, std::clamp(from.t + share * (end - from.t), 0.0, 1.0)};
 }
 
-std::size_t least_number(const SurfaceLine& line, double wanted) {
-  const double least = line.vertices.front() == line.vertices.back() ? 3 : 1;
-  return static_cast<std::size_t>(std::clamp(wanted, least, 1e8));
+/// A line that turns gets sides enough to tell, as far as it has them: an arc should not become its chord.
+double sides_for_turns(const SurfaceParts& parts, const SurfaceLine& line) {
+  double turn = 0;
+  for (std::size_t i = 1; i + 1 < line.vertices.size(); ++i) {
+    const Point p = parts.model.points[line.vertices[i]];
+    const Point in = p - parts.model.points[line.vertices[i - 1]], out = parts.model.points[line.vertices[i + 1]] - p;
+    turn += std::atan2(length(cross(in, out)), dot(in, out));
+  }
+  return std::min(std::round(turn / kTurnPerSide), double(line.edges.size()));
+}
+
+std::size_t number_of_sides(const SurfaceParts& parts, const SurfaceLine& line, double wanted) {
+  const double turns = sides_for_turns(parts, line);
+  const bool is_closed = line.vertices.front() == line.vertices.back();
+  const double least =
+      is_closed ? std::max(3.0, turns) : std::max(1.0, std::round(std::min(turns, kMostForTurns * wanted)));
+  return static_cast<std::size_t>(std::clamp(std::round(wanted), least, 1e8));
 }
 
 std::vector<LinePoint> keep(const SurfaceLine& line) {
@@ -106,7 +122,7 @@ void divide_lines(const SurfaceParts& parts, const SizeField& size, const std::v
       return;
     }
     const MeasuredLine measured = measure(parts, line, size);
-    division[l] = divide(line, measured, least_number(line, std::round(measured.sum.back())));
+    division[l] = divide(line, measured, number_of_sides(parts, line, measured.sum.back()));
   });
   raise_doubles(parts, size, is_kept, division);
 }

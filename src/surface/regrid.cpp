@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/parallel.hpp"
+#include "delfront/errors.hpp"
 #include "delfront/surface_grid.hpp"
 #include "geometry/surface_findings.hpp"
 #include "surface/assemble.hpp"
@@ -32,7 +33,7 @@ class Regridder {
         options_(options),
         report_(report),
         context_(context),
-        size_(size, build_bend_guard(model, context)),
+        size_(size, build_bend_guard(model, size, context)),
         parts_(model, size_, context) {}
 
   Model run();
@@ -78,7 +79,17 @@ class Regridder {
   std::vector<RegionFit> fits_;
 };
 
+/// What has the same triangle twice cannot be told apart.
+void refuse_bad_triangles(const Model& model) {
+  std::vector<Finding> findings;
+  find_bad_triangles(Surface(model), findings);
+  for (Finding& finding : findings)
+    if (finding.severity == Severity::error)
+      throw InputError(finding.message + "; " + finding.remedy, std::move(finding.places));
+}
+
 void Regridder::start() {
+  refuse_bad_triangles(model_);
   const std::size_t n = parts_.regions.size();
   state_.resize(n);
   supports_.resize(n);
@@ -318,6 +329,8 @@ Model Regridder::run() {
     return std::move(made.model);
   }
   report_.fallbacks.push_back({SurfaceFallback::Kind::kept, "", {}, "no grid without faults was found"});
+  report_.triangles = model_.triangles.size();
+  report_.points = model_.points.size();
   return model_;
 }
 

@@ -8,6 +8,8 @@
 namespace delfront {
 namespace {
 
+constexpr int kLongestWalk = 16;  ///< triangles; farther, the tree is quicker
+
 Point unit(Point p) {
   const double size = length(p);
   return size > 0 ? p / size : p;
@@ -52,6 +54,46 @@ SurfaceSupport::SurfaceSupport(const SurfaceParts& parts, const SurfaceRegion& r
   }
   euler_ = long(at_vertex.size()) - edges + long(region.triangles.size());
   tree_ = TriangleTree(std::move(corners));
+  link(parts, region);
+}
+
+void SurfaceSupport::link(const SurfaceParts& parts, const SurfaceRegion& region) {
+  const auto& all = region.triangles;  // in ascending order
+  for (const std::uint32_t t : all) {
+    std::array<std::uint32_t, 3> other = {kNoTriangle, kNoTriangle, kNoTriangle};
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t e = parts.edges.edge_of(3 * t + k);
+      if (parts.is_feature[e]) continue;
+      const auto half = parts.edges.half_edges(e);
+      const std::uint32_t neighbour = (half[0] / 3 == t ? half[1] : half[0]) / 3;
+      other[k] = static_cast<std::uint32_t>(std::lower_bound(all.begin(), all.end(), neighbour) - all.begin());
+    }
+    neighbour_.push_back(other);
+  }
+}
+
+/// The triangle that p lies above, or one beside the ridge that it lies above; kNoTriangle where the way leads over the
+/// border, or is long.
+std::uint32_t SurfaceSupport::walk(Point p, std::uint32_t from) const {
+  std::uint32_t here = from, last = kNoTriangle;
+  for (int step = 0; step < kLongestWalk; ++step) {
+    const auto& corner = tree_.corners(here);
+    double worst = 0;
+    std::size_t way = 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Point side = corner[(k + 1) % 3] - corner[k];
+      const double inward = dot(cross(normal_[here], side), p - corner[k]);
+      if (inward >= 0 || inward * inward <= worst * squared_length(side)) continue;
+      worst = inward * inward / squared_length(side);
+      way = k;
+    }
+    if (way == 3) return here;
+    const std::uint32_t next = neighbour_[here][way];
+    if (next == kNoTriangle || next == last) return next == kNoTriangle ? kNoTriangle : here;
+    last = here;
+    here = next;
+  }
+  return kNoTriangle;
 }
 
 SurfaceSupport::Foot SurfaceSupport::foot(std::uint32_t t, Point p) const {
@@ -78,6 +120,11 @@ SurfaceSupport::Foot SurfaceSupport::project(Point p, Point normal, double limit
 
 SurfaceSupport::Foot SurfaceSupport::project(Point p, Point normal, std::uint32_t near, double limit) const {
   if (near == kNoTriangle || !(dot(normal_[near], normal) > kAgree)) return project(p, normal, limit);
+  const std::uint32_t under = walk(p, near);
+  if (under != kNoTriangle && dot(normal_[under], normal) > kAgree) {
+    const Foot found = foot(under, p);
+    return found.distance < limit ? found : Foot{};
+  }
   const auto& [a, b, c] = tree_.corners(near);
   const double bound = delfront::distance(nearest_point_on_triangle(p, a, b, c), p);
   if (bound < limit) {

@@ -26,7 +26,8 @@ class SurfaceSupport {
 
   /// @brief The nearest place, nearer than `limit`, where the surface faces as `normal` does.
   Foot project(Point p, Point normal, double limit = std::numeric_limits<double>::infinity()) const;
-  /// @brief The same; most often found on, or beside, the triangle that a place near by was found on.
+  /// @brief The same, from the triangle of a place near by: the place that lies right under p on the same sheet, where
+  /// a short walk finds it.
   Foot project(Point p, Point normal, std::uint32_t near, double limit) const;
 
   std::size_t size() const { return normal_.size(); }
@@ -38,11 +39,14 @@ class SurfaceSupport {
   double mean_side() const { return mean_side_; }
 
  private:
+  void link(const SurfaceParts& parts, const SurfaceRegion& region);
   Foot foot(std::uint32_t t, Point p) const;
+  std::uint32_t walk(Point p, std::uint32_t from) const;
 
   TriangleTree tree_;
   std::vector<Point> normal_;
   std::vector<std::array<Point, 3>> corner_normal_;
+  std::vector<std::array<std::uint32_t, 3>> neighbour_;  ///< over side k to k + 1, or kNoTriangle
   long euler_ = 0;
   double area_ = 0, mean_side_ = 0;
 };

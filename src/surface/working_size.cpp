@@ -37,11 +37,15 @@ double WorkingSize::lower_bound(const Box& box) const {
   return bound;
 }
 
-std::shared_ptr<const SizeField> build_bend_guard(const Model& model, Context& context) {
+std::shared_ptr<const SizeField> build_bend_guard(const Model& model, const SizeField& asked, Context& context) {
   CurvatureSizes wish;
   wish.cells_per_turn = kSidesPerTurn;
-  wish.hmin = usual_hmin(model);
-  wish.hmax = 0.25 * model.surface_box().diagonal();
+  // bends that need no less than is asked for anywhere, or that would be cut off below a share of it, say nothing
+  std::vector<double> sizes(model.points.size());
+  evaluate_sizes(asked, model.points, sizes, context);
+  const auto [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+  wish.hmin = WorkingSize::kGuardShare * *least;
+  wish.hmax = std::max(*most, wish.hmin);
   GeometrySources found = find_curvature_sizes(model, wish, context);
   merge_close_sources(found);
   if (found.sources.empty()) return nullptr;

@@ -12,6 +12,8 @@ namespace delfront {
 /// where a grid with them failed.
 class WorkingSize : public SizeField {
  public:
+  static constexpr double kGuardShare = 0.25;  ///< what is asked for is lowered to this at most
+
   /// @param guard  sizes that the shape needs, null: none; they lower what is asked for to a quarter at most
   WorkingSize(const SizeField& asked, std::shared_ptr<const SizeField> guard)
       : asked_(asked), guard_(std::move(guard)) {}
@@ -23,13 +25,12 @@ class WorkingSize : public SizeField {
   double lower_bound(const Box& box) const override;
 
  private:
-  static constexpr double kGuardShare = 0.25;
   const SizeField& asked_;
   std::shared_ptr<const SizeField> guard_;
   std::shared_ptr<const SizeField> lowered_;
 };
 
 /// @brief Sizes that the surface's bends need: so many sides round a circle. @return null where none are less than h
-std::shared_ptr<const SizeField> build_bend_guard(const Model& model, Context& context);
+std::shared_ptr<const SizeField> build_bend_guard(const Model& model, const SizeField& asked, Context& context);
 
 }  // namespace delfront
