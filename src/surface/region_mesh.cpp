@@ -19,15 +19,6 @@ Point unit(Point p) {
 
 Point area_vector(Point a, Point b, Point c) { return cross(b - a, c - a); }
 
-double angle_at(Point p, Point q, Point r) {
-  const Point u = q - p, v = r - p;
-  return std::atan2(length(cross(u, v)), dot(u, v));
-}
-
-double least_angle(Point a, Point b, Point c) {
-  return std::min({angle_at(a, b, c), angle_at(b, c, a), angle_at(c, a, b)});
-}
-
 }  // namespace
 
 double triangle_quality(Point a, Point b, Point c, Point normal) {
@@ -83,10 +74,32 @@ bool RegionMesh::ring(std::uint32_t p) {
   return true;
 }
 
+/// The triangles at a point, from border to border; where the border touches itself in the point: one such part.
+void RegionMesh::fan(std::uint32_t p) {
+  ring_.triangles.clear();
+  ring_.points.clear();
+  const std::uint32_t any = side_at_[p];
+  if (any == kNone) return;
+  std::uint32_t begin = any;
+  while (other_[begin] != kNone) {
+    begin = next(other_[begin]);
+    if (begin == any) break;
+  }
+  std::uint32_t s = begin;
+  do {
+    ring_.triangles.push_back(s / 3);
+    ring_.points.push_back(point(next(s)));
+    if (other_[before(s)] == kNone) {
+      ring_.points.push_back(point(before(s)));
+      return;
+    }
+    s = other_[before(s)];
+  } while (s != begin);
+}
+
 bool RegionMesh::is_joined(std::uint32_t p, std::uint32_t q) {
-  if (p < grid_.num_border) std::swap(p, q);
-  if (p < grid_.num_border) return false;  // told by the normals, and by the last check
-  return !ring(p) || std::find(ring_.points.begin(), ring_.points.end(), q) != ring_.points.end();
+  fan(p);
+  return std::find(ring_.points.begin(), ring_.points.end(), q) != ring_.points.end();
 }
 
 Point RegionMesh::ring_normal() const {
@@ -138,7 +151,7 @@ std::size_t RegionMesh::flip_to_delaunay(int passes) {
   for (int pass = 0; pass < passes; ++pass) {
     std::size_t count = 0;
     for (std::uint32_t s = 0; s < other_.size(); ++s)
-      if (other_[s] != kNone && s < other_[s]) count += flip(s);
+      if (other_[s] != kNone && s < other_[s] && is_alive(s)) count += flip(s);
     total += count;
     if (count == 0) break;
   }
@@ -186,12 +199,29 @@ std::size_t RegionMesh::smooth(int passes) {
   return total;
 }
 
-double RegionMesh::smallest_angle() const {
-  double least = 4;
-  for (const auto& [a, b, c] : grid_.triangles) least = std::min(least, least_angle(at(a), at(b), at(c)));
-  return least;
+RegionGrid RegionMesh::take() {
+  compact();
+  return std::move(grid_);
 }
 
-RegionGrid RegionMesh::take() { return std::move(grid_); }
+void RegionMesh::compact() {
+  auto& triangles = grid_.triangles;
+  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), [](const auto& t) { return t[0] == kNone; }),
+                  triangles.end());
+  std::vector<std::uint32_t> number(grid_.points.size(), kNone);
+  for (const auto& t : triangles)
+    for (const std::uint32_t p : t) number[p] = 0;
+  std::uint32_t count = 0;
+  for (std::uint32_t p = 0; p < number.size(); ++p) {
+    if (number[p] == kNone && p >= grid_.num_border) continue;
+    grid_.points[count] = grid_.points[p];
+    grid_.triangle_of_point[count] = grid_.triangle_of_point[p];
+    number[p] = count++;
+  }
+  grid_.points.resize(count);
+  grid_.triangle_of_point.resize(count);
+  for (auto& t : triangles)
+    for (std::uint32_t& p : t) p = number[p];
+}
 
 }  // namespace delfront

@@ -23,8 +23,27 @@ class RegionMesh {
   /// angle round it rises. @return points moved
   std::size_t smooth(int passes);
 
+  /// @brief Divide a side at a point of the grid that nothing uses yet.
+  void split(std::uint32_t side, std::uint32_t p);
+  std::uint32_t add_point(Point at, std::uint32_t foot);
+  /// @brief Move point v into its neighbour u, where no triangle turns over and the topology stays. A point of the
+  /// border moves along the border alone.
+  /// @param longest  new sides may be no longer
+  bool collapse(std::uint32_t v, std::uint32_t u, double longest = std::numeric_limits<double>::infinity());
+
+  std::size_t num_sides() const { return other_.size(); }
+  bool is_alive(std::uint32_t side) const { return grid_.triangles[side / 3][0] != kNone; }
+  bool is_border(std::uint32_t side) const { return other_[side] == kNone; }
+  std::array<std::uint32_t, 2> ends(std::uint32_t side) const { return {point(side), point(next(side))}; }
+  Point place(std::uint32_t p) const { return grid_.points[p]; }
+  std::uint32_t foot(std::uint32_t p) const { return grid_.triangle_of_point[p]; }
+  /// @brief Of the triangles on both sides.
+  Point normal(std::uint32_t side) const;
+  /// @brief Neighbours of a point of the border along it; the point itself where it is gone.
+  std::array<std::uint32_t, 2> along_border(std::uint32_t p);
+
+  /// @brief The grid without triangles that are gone and points that nothing uses.
   RegionGrid take();
-  double smallest_angle() const;
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -33,6 +52,10 @@ class RegionMesh {
   };
 
   void link();
+  void compact();
+  void fan(std::uint32_t p);
+  void bond_triangle(std::uint32_t t);
+  bool may_collapse(std::uint32_t v, std::uint32_t u, double longest);
   bool flip(std::uint32_t side);
   void bond(std::uint32_t side, std::uint32_t other);
   bool ring(std::uint32_t p);

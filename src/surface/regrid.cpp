@@ -14,6 +14,7 @@
 #include "surface/assemble.hpp"
 #include "surface/region_check.hpp"
 #include "surface/region_mesh.hpp"
+#include "surface/remesh.hpp"
 #include "surface/working_size.hpp"
 
 namespace delfront {
@@ -44,6 +45,7 @@ class Regridder {
     bool is_kept = false;
     bool is_asked = false;  ///< to be kept
     bool is_due = true;
+    bool is_remeshed = false;
     std::string why;
     Point at;
   };
@@ -52,6 +54,7 @@ class Regridder {
   void divide();
   void grid_regions();
   RegionGrid grid_region(std::uint32_t r) const;
+  void remesh(std::uint32_t r);
   RegionGrid given_triangles(std::uint32_t r) const;
   bool mend_regions();
   bool mend_crossings(const AssembledSurface& made);
@@ -218,7 +221,22 @@ void Regridder::grid_regions() {
     if (!supports_[r]) supports_[r] = std::make_unique<SurfaceSupport>(parts_, parts_.regions[r]);
     grids_[r] = grid_region(r);
     fits_[r] = check_region(*supports_[r], borders_[r], grids_[r]);
+    state_[r].is_remeshed = false;
+    if (!grids_[r].gave_up.empty()) remesh(r);
   });
+}
+
+/// Where the front fails, the given triangles are changed locally.
+void Regridder::remesh(std::uint32_t r) {
+  RegionGrid grid = remesh_region(parts_, parts_.regions[r], *supports_[r], borders_[r], lines_, division_, size_);
+  const RegionFit fit = check_region(*supports_[r], borders_[r], grid);
+  if (!grid.gave_up.empty()) return;
+  state_[r].is_remeshed = true;
+  state_[r].why = grids_[r].gave_up;
+  state_[r].at = grids_[r].gave_up_at;
+  grid.steps = grids_[r].steps;
+  grids_[r] = std::move(grid);
+  fits_[r] = fit;
 }
 
 void Regridder::fail(std::uint32_t r, const std::string& why, Point at) {
@@ -310,9 +328,9 @@ void Regridder::fill_report(const AssembledSurface& made) const {
       r.largest_distance_at = fit.at;
     }
   for (std::size_t i = 0; i < state_.size(); ++i) {
-    if (!state_[i].is_kept || state_[i].is_asked) continue;
-    r.fallbacks.push_back(
-        {SurfaceFallback::Kind::kept, m.patches[parts_.regions[i].patch].name, state_[i].at, state_[i].why});
+    if (state_[i].is_asked || (!state_[i].is_kept && !state_[i].is_remeshed)) continue;
+    r.fallbacks.push_back({state_[i].is_kept ? SurfaceFallback::Kind::kept : SurfaceFallback::Kind::remeshed,
+                           m.patches[parts_.regions[i].patch].name, state_[i].at, state_[i].why});
   }
 }
 
