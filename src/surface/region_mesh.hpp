@@ -33,6 +33,9 @@ class RegionMesh {
 
   std::size_t num_sides() const { return other_.size(); }
   bool is_alive(std::uint32_t side) const { return grid_.triangles[side / 3][0] != kNone; }
+  bool is_inner(std::uint32_t p) { return ring(p); }
+  std::size_t num_points() const { return grid_.points.size(); }
+  const std::vector<Point>& points() const { return grid_.points; }
   bool is_border(std::uint32_t side) const { return other_[side] == kNone; }
   std::array<std::uint32_t, 2> ends(std::uint32_t side) const { return {point(side), point(next(side))}; }
   Point place(std::uint32_t p) const { return grid_.points[p]; }

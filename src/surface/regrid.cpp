@@ -13,6 +13,7 @@
 #include "geometry/surface_findings.hpp"
 #include "surface/assemble.hpp"
 #include "surface/region_check.hpp"
+#include "surface/region_fit.hpp"
 #include "surface/region_mesh.hpp"
 #include "surface/remesh.hpp"
 #include "surface/working_size.hpp"
@@ -199,11 +200,7 @@ RegionGrid Regridder::grid_region(std::uint32_t r) const {
   RegionGrid grid = SurfaceFront(*supports_[r], size_).grid(borders_[r], context_);
   if (!grid.gave_up.empty()) return grid;
   RegionMesh mesh(*supports_[r], std::move(grid));
-  for (int pass = 0; pass < 3; ++pass) {
-    mesh.flip_to_delaunay(4);
-    mesh.smooth(2);
-  }
-  mesh.flip_to_delaunay(options_.method == "delaunay" ? 100 : 4);
+  improve_region(mesh, *supports_[r], size_, options_.method == "delaunay");
   return mesh.take();
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "surface/region_fit.hpp"
 #include "surface/region_mesh.hpp"
 
 namespace delfront {
@@ -30,7 +31,7 @@ class Remesher {
     RegionMesh mesh(support_, begin());
     put_border_points(mesh);
     for (int pass = 0; pass < kPasses; ++pass) {
-      const std::size_t changed = drop_old_points(mesh) + collapse_short(mesh) + split_long(mesh);
+      const std::size_t changed = drop_old_points(mesh) + fit_lengths(mesh, support_, size_, kShort, kLong);
       mesh.flip_to_delaunay(4);
       mesh.smooth(1);
       if (changed == 0 && pass > 2) break;
@@ -139,47 +140,6 @@ class Remesher {
       count += mesh.collapse(p, is_first_nearer ? first : last) || mesh.collapse(p, is_first_nearer ? last : first);
     }
     return count;
-  }
-
-  double wanted(const RegionMesh& mesh, std::uint32_t side) const {
-    const auto [a, b] = mesh.ends(side);
-    return size_.size(0.5 * (mesh.place(a) + mesh.place(b)));
-  }
-
-  static double side_length(const RegionMesh& mesh, std::uint32_t side) {
-    const auto [a, b] = mesh.ends(side);
-    return distance(mesh.place(a), mesh.place(b));
-  }
-
-  /// Inner points move into neighbours that are too near.
-  std::size_t collapse_short(RegionMesh& mesh) {
-    std::size_t count = 0;
-    for (std::uint32_t s = 0; s < mesh.num_sides(); ++s) {
-      if (!mesh.is_alive(s) || mesh.is_border(s)) continue;
-      const auto [v, u] = mesh.ends(s);
-      if (!is_inner(v) || side_length(mesh, s) >= kShort * wanted(mesh, s)) continue;
-      count += mesh.collapse(v, u, kLong * wanted(mesh, s));
-    }
-    return count;
-  }
-
-  std::size_t split_long(RegionMesh& mesh) {
-    std::size_t count = 0;
-    const auto num_sides = static_cast<std::uint32_t>(mesh.num_sides());
-    for (std::uint32_t s = 0; s < num_sides; ++s) {
-      if (!mesh.is_alive(s) || mesh.is_border(s) || side_length(mesh, s) <= kLong * wanted(mesh, s)) continue;
-      const auto [a, b] = mesh.ends(s);
-      const Point middle = 0.5 * (mesh.place(a) + mesh.place(b));
-      const auto foot = support_.project(middle, mesh.normal(s), mesh.foot(a), side_length(mesh, s));
-      if (!foot.found()) continue;
-      mesh.split(s, mesh.add_point(foot.at, foot.triangle));
-      ++count;
-    }
-    return count;
-  }
-
-  bool is_inner(std::uint32_t p) const {
-    return p >= border_.point.size() && !std::binary_search(old_.begin(), old_.end(), p);
   }
 
   const SurfaceParts& parts_;
