@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kBinsPerTry = 64, kTries = 5;
 constexpr double kBinsPerOctave = 4;
 constexpr std::size_t kMostSteps = 8;  ///< a triangle: 1.1 to 2 are usual
+constexpr double kMostArea = 1.3;      ///< of the support
 constexpr std::size_t kCheckEvery = 4096;
 
 Point unit(Point p) { return p / length(p); }
@@ -165,6 +166,7 @@ void SurfaceFront::add_triangle(std::uint32_t s, std::uint32_t c) {
   const std::uint32_t a = sides_[s].node[0], b = sides_[s].node[1];
   const Point normal = sides_[s].normal;
   result_.triangles.push_back({a, b, c});
+  area_ += 0.5 * length(cross(points_[b].at - points_[a].at, points_[c].at - points_[a].at));
   remove_side(s);
   const std::uint32_t ends[2][2] = {{b, c}, {c, a}};
   for (const auto& [from, to] : ends) {
@@ -194,6 +196,7 @@ void SurfaceFront::run(const Context& context) {
     }
     if (++result_.steps % kCheckEvery == 0) context.check_limits();
     if (num_in_tree_ > 3 * num_alive_ + 1000) rebuild_tree();
+    if (area_ > kMostArea * support_.area()) return;  // it runs over what it has gridded
     if (result_.steps > kMostSteps * (result_.triangles.size() + num_begun)) return;  // it goes round in circles
     if (advance(s)) continue;
     if (++sides_[s].tries < kTries) queue(s);

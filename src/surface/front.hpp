@@ -115,6 +115,7 @@ class SurfaceFront {
   std::vector<FrontSide> sides_;
   std::size_t num_alive_ = 0, num_in_tree_ = 0;
   double shortest_ = 1;
+  double area_ = 0;  ///< of the triangles made
   std::vector<std::vector<std::uint32_t>> bins_;
   std::vector<std::size_t> bin_begin_;
   std::size_t lowest_bin_ = 0;

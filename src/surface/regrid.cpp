@@ -21,7 +21,8 @@
 namespace delfront {
 namespace {
 
-constexpr int kLowerings = 2;        ///< of sizes, before a region keeps its triangles
+constexpr int kLowerings = 3;  ///< of sizes, before a region keeps its triangles
+constexpr std::size_t kPlacesInRegion = 500;
 constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of lines that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
@@ -60,6 +61,7 @@ class Regridder {
   bool mend_regions();
   bool mend_crossings(const AssembledSurface& made);
   void fail(std::uint32_t r, const std::string& why, Point at);
+  void lower_at(Point at);
   void keep(std::uint32_t r);
   void make_due(std::uint32_t r);
   void lower_near_short_sides();
@@ -241,14 +243,23 @@ void Regridder::fail(std::uint32_t r, const std::string& why, Point at) {
   if (state.is_kept) return;
   state.why = why;
   state.at = at;
-  if (state.failures++ < kLowerings) {
-    lowered_.points.push_back(at);
-    lowered_.size.push_back(kLowerShare * size_.size(at));
-    ++report_.sizes_lowered;
-    make_due(r);
-  } else {
-    keep(r);
+  if (state.failures >= kLowerings) return keep(r);
+  lower_at(at);
+  if (state.failures > 0) {  // once more: not the place alone is too coarse
+    const auto& triangles = parts_.regions[r].triangles;
+    const std::size_t step = triangles.size() / kPlacesInRegion + 1;
+    for (std::size_t i = 0; i < triangles.size(); i += step)
+      lower_at((parts_.corner(triangles[i], 0) + parts_.corner(triangles[i], 1) + parts_.corner(triangles[i], 2)) /
+               3.0);
   }
+  ++state.failures;
+  make_due(r);
+}
+
+void Regridder::lower_at(Point at) {
+  lowered_.points.push_back(at);
+  lowered_.size.push_back(kLowerShare * size_.size(at));
+  ++report_.sizes_lowered;
 }
 
 /// @return whether all regions have grids
