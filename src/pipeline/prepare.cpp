@@ -34,6 +34,12 @@ void refuse_invalid(const SurfaceReport& surface) {
   throw InputError(message, std::move(places));
 }
 
+std::vector<bool> far_field_patches(const Model& model) {
+  std::vector<bool> is_far_field;
+  for (const Patch& patch : model.patches) is_far_field.push_back(patch.kind == "farfield");
+  return is_far_field;
+}
+
 /// A new surface is looked at as a given one is.
 void regrid(Model& model, const Options& options, const SizeField* asked, Report& report, Context& context) {
   regrid_as_asked(model, options, asked, report.surface_grid, context);
@@ -43,10 +49,28 @@ void regrid(Model& model, const Options& options, const SizeField* asked, Report
   refuse_invalid(report.surface);
 }
 
-std::vector<bool> far_field_patches(const Model& model) {
-  std::vector<bool> is_far_field;
-  for (const Patch& patch : model.patches) is_far_field.push_back(patch.kind == "farfield");
-  return is_far_field;
+BoundaryGrid recover(Model& model, const Options& options, Report& report, Context& context) {
+  return tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+}
+
+/// A new surface that cannot be recovered gives way to the given one, which most often can.
+BoundaryGrid regrid_and_recover(Model& model, const Options& options, const SizeField* asked, Report& report,
+                                Context& context) {
+  const Model given = model;
+  const SurfaceReport of_given = report.surface;
+  try {
+    regrid(model, options, asked, report, context);
+    return recover(model, options, report, context);
+  } catch (const MeshingError& e) {
+    const Point at = e.places.empty() ? Point{} : e.places[0].at;
+    context.warn(fmt::format("the new surface cannot be filled, the given triangles are kept: {}", e.what()));
+    report.surface_grid = {};
+    report.surface_grid.fallbacks.push_back({SurfaceFallback::Kind::kept, "", at, e.what()});
+    report.surface = of_given;
+    report.recovery = {};
+    model = given;
+    return recover(model, options, report, context);
+  }
 }
 
 /// The size of every boundary vertex that the grid uses.
@@ -107,9 +131,9 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
                         Context& context) {
   report.surface = prepare_surface(model, context);
   refuse_invalid(report.surface);
-  if (options.surface.method != "keep") regrid(model, options, asked.get(), report, context);
   Prepared prepared;
-  prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+  prepared.grid = options.surface.method == "keep" ? recover(model, options, report, context)
+                                                   : regrid_and_recover(model, options, asked.get(), report, context);
   warn_of_coarse_surface(model, options.size, asked.get(), context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);

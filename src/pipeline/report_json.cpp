@@ -308,8 +308,9 @@ std::string report_json(const JobResult& result, const Options& options, const s
         {"longest_side", number(result.scale.longest_side)},
         {"metres_per_unit", result.scale.metres_per_unit > 0 ? Json(result.scale.metres_per_unit) : Json(nullptr)}}},
       {"surface", to_json(result.report.surface)},
-      {"surface_grid",
-       result.report.surface_grid.triangles ? to_json(result.report.surface_grid) : Json(nullptr)},
+      {"surface_grid", result.report.surface_grid.triangles || !result.report.surface_grid.fallbacks.empty()
+                           ? to_json(result.report.surface_grid)
+                           : Json(nullptr)},
       {"recovery", to_json(result.report.recovery)},
       {"refine", to_json(result.report.refine)},
       {"improve", to_json(result.report.improve)},

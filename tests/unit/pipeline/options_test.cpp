@@ -308,6 +308,7 @@ Options unusual_options() {
       {"size.adaptive.smooth", "true"},
       {"planar.boundary", "split"},
       {"planar.min_angle", "25"},
+      {"surface.method", "front"},
       {"volume.method", "none"},
       {"volume.core", "false"},
       {"improve.enabled", "false"},
