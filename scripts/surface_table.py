@@ -70,6 +70,8 @@ def judge(row, arguments, options, folder):
     if code != 0:
         return [*cells, "", ""], f"grid: exit {code}: {said}"
     looked = read_report(report)
+    if not (looked["surface_grid"] or {}).get("triangles"):  # the new one could not be filled
+        surface, cells[-2] = given, cells[-2] + " + all"
     least = looked["quality"]["measures"]["min_dihedral"]["min"]
     cells += [f"{looked['quality']['num_cells']:,}", f"{least:.1f}"]
     command = [options.python, options.checker, grid, "--surface", surface, "--keep-surface"]

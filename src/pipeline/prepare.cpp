@@ -134,7 +134,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   Prepared prepared;
   prepared.grid = options.surface.method == "keep" ? recover(model, options, report, context)
                                                    : regrid_and_recover(model, options, asked.get(), report, context);
-  warn_of_coarse_surface(model, options.size, asked.get(), context);
+  if (options.surface.method == "keep") warn_of_coarse_surface(model, options.size, asked.get(), context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;
