@@ -55,7 +55,8 @@ struct SurfaceGridReport {
 /// points lie on the given triangles (those on lines on the given lines). Each piece between lines is gridded by an
 /// advancing front directly in space; where that comes to no good end its given triangles are changed locally, or,
 /// failing that, kept as they are with their borders: the result is never worse to grid than what was given. Triangles
-/// keep their orientation; the result is closed where the given surface is.
+/// keep their orientation; the result is closed where the given surface is. Model::input_face counts the
+/// new triangles.
 /// @param size     wanted sides; of points on the surface
 /// @param options  options.method "keep" returns the model as it is
 /// @throws InputError  triangles without area, or twice the same (places given)

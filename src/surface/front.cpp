@@ -205,7 +205,8 @@ void SurfaceFront::run(const Context& context) {
 
 RegionGrid SurfaceFront::finish() {
   if (num_alive_ > 0 || result_.triangles.empty()) {
-    result_.gave_up = fmt::format("{} sides of the front are left", num_alive_);
+    result_.gave_up = result_.triangles.empty() ? "no first triangle fits"
+                                                : fmt::format("{} sides of the front are left", num_alive_);
     for (const FrontSide& side : sides_)
       if (side.is_alive) result_.gave_up_at = points_[side.node[0]].at;
   }

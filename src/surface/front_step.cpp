@@ -48,8 +48,8 @@ bool SurfaceFront::advance(std::uint32_t s) {
   if (!(size > 0)) return false;
   n = n / size;
   plane_ = {0.5 * (a_ + b_), u, cross(n, u), n};
-  // F7.1: two looks at the size, at the side and at the ideal place
-  double h = 0.5 * (points_[side.node[0]].h + points_[side.node[1]].h);
+  // F7.1: the side is as far from the place as the sizes at its ends ask, within what the side itself allows
+  const double h = 0.5 * (points_[side.node[0]].h + points_[side.node[1]].h);
   wanted_ = std::clamp(h, 1.1 * half_, 4 * half_);
   ideal_ = plane_.origin + std::sqrt(wanted_ * wanted_ - half_ * half_) * plane_.v;
   candidates_.clear();
@@ -164,7 +164,6 @@ void SurfaceFront::add_new_point(std::uint32_t s, double height, double bonus) {
   const std::uint32_t hint = points_[sides_[s].node[0]].foot;
   candidate.foot = support_.project(place, plane_.n, hint, wanted_);
   if (!candidate.foot.found()) return;
-  // the surface bends away from the plane: the place goes back to the wanted distance
   candidate.at = candidate.foot.at;
   candidate.flat = plane_.flat(candidate.at);
   if (!(candidate.flat[1] > 0.3 * height)) return;
