@@ -257,6 +257,10 @@ class JobCommand : public Command {
     print_mesh_facts(result.mesh);
     const QualityReport& quality = result.report.quality;
     if (quality.num_cells) print_quality(quality, 0);
+    const SurfaceGridReport& grid = result.report.surface_grid;
+    if (grid.triangles)
+      fmt::print("new surface    {} triangles (given: {}), angles from {:.1f} degrees, at most {:.3g} off\n",
+                 grid.triangles, grid.triangles_given, grid.min_angle_deg, grid.largest_distance);
     const RecoveryReport& recovery = result.report.recovery;
     if (recovery.steiner_left)
       fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);

@@ -13,6 +13,7 @@
 #include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
 #include "delfront/surface_check.hpp"
+#include "delfront/surface_grid.hpp"
 
 namespace delfront {
 
@@ -66,6 +67,7 @@ struct ImproveReport {
 
 struct Report {
   SurfaceReport surface;
+  SurfaceGridReport surface_grid;  ///< where the surface was gridded anew
   RecoveryReport recovery;
   RefineReport refine;
   FrontReport front;

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
@@ -33,7 +35,51 @@ constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may l
 constexpr double kWorthSlabs = 0.15;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
 constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
-constexpr int kPhases = 4;       ///< three axes, then one piece
+constexpr std::size_t kFew = 3;   ///< times so many faces in the front as there are to do: only those near are searched
+constexpr int kPhases = 4;        ///< three axes, then one piece
+
+/// Cells of a lattice round some boxes, told by hashes: a box that is near one of them is always found, others at
+/// times.
+class CellMarks {
+ public:
+  CellMarks(std::size_t boxes, double margin) : margin_(margin), side_(4 * margin) {
+    bits_.resize(std::bit_ceil(std::size_t{64} * boxes + 1));
+  }
+  void add(Box box) {
+    const Point around{margin_, margin_, margin_};
+    box.low = box.low - around;
+    box.high = box.high + around;
+    visit(box, [&](std::size_t bit) { return bits_[bit] = true, false; });
+  }
+  bool are_near(const Box& box) const {
+    if (box.longest_side() > side_) return true;
+    return visit(box, [&](std::size_t bit) { return bool(bits_[bit]); });
+  }
+
+ private:
+  template <class Visit>
+  bool visit(const Box& box, Visit&& stop_at) const {
+    std::int64_t low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+      low[k] = static_cast<std::int64_t>(std::floor(box.low[k] / side_));
+      high[k] = static_cast<std::int64_t>(std::floor(box.high[k] / side_));
+    }
+    for (std::int64_t i = low[0]; i <= high[0]; ++i)
+      for (std::int64_t j = low[1]; j <= high[1]; ++j)
+        for (std::int64_t k = low[2]; k <= high[2]; ++k)
+          if (stop_at(bit_of(i, j, k))) return true;
+    return false;
+  }
+  std::size_t bit_of(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    auto h = static_cast<std::uint64_t>(i) * 0x9e3779b97f4a7c15ull;
+    h = (h ^ (h >> 29) ^ static_cast<std::uint64_t>(j)) * 0xbf58476d1ce4e5b9ull;
+    h = (h ^ (h >> 31) ^ static_cast<std::uint64_t>(k)) * 0x94d049bb133111ebull;
+    return (h >> 20) & (bits_.size() - 1);
+  }
+
+  double margin_, side_;
+  std::vector<bool> bits_;
+};
 
 class Front {
  public:
@@ -79,10 +125,13 @@ class Front {
   }
 
   /// Slots are used again, so a number may stand there twice.
-  void keep_live(std::vector<std::uint32_t>& faces) const {
-    std::erase_if(faces, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  void keep_live(std::vector<std::uint32_t>& faces) {
+    is_listed_.assign(front_.num_slots(), false);
+    std::erase_if(faces, [&](std::uint32_t f) {
+      if (!front_.face(f).is_alive || is_listed_[f]) return true;
+      is_listed_[f] = true;
+      return false;
+    });
   }
 
   /// F6: those that would make the smallest elements, along a curve.
@@ -108,7 +157,7 @@ class Front {
     const HilbertCurve curve(box);
     order_.clear();
     for (const std::uint32_t f : active_) order_.push_back({curve.key(middle(f)), f});
-    std::sort(order_.begin(), order_.end());
+    radix_sort(order_, context_.threads);
     for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = order_[i].second;
   }
 
@@ -198,9 +247,14 @@ class Front {
     box.low[slab.axis] = std::max(box.low[slab.axis], slab.low);
     box.high[slab.axis] = std::min(box.high[slab.axis], slab.high);
     worker.tree.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
+    const bool are_few = kFew * faces.size() < live_.size();
+    CellMarks marks(are_few ? faces.size() : 0, margin);
+    if (are_few)
+      for (const std::uint32_t f : faces) marks.add(front_.box(f));
     for (const std::uint32_t f : live_) {
       if (!front_.face(f).is_alive) continue;
-      if (box.overlaps(front_.box(f))) worker.add_to_tree(f);
+      const Box of_face = front_.box(f);
+      if (box.overlaps(of_face) && (!are_few || marks.are_near(of_face))) worker.add_to_tree(f);
     }
   }
 
@@ -228,6 +282,7 @@ class Front {
   const FrontSettings* settings_ = nullptr;
   std::vector<std::uint32_t> waiting_, skipped_, active_;  ///< faces
   std::vector<std::uint32_t> live_;                        ///< all faces of the front; some that were
+  std::vector<bool> is_listed_;                            ///< scratch of keep_live()
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;
   FrontCounts counts_;
   FrontReport report_;

@@ -309,6 +309,7 @@ Options unusual_options() {
       {"planar.boundary", "split"},
       {"planar.method", "front"},
       {"planar.min_angle", "25"},
+      {"surface.method", "front"},
       {"volume.method", "none"},
       {"volume.core", "false"},
       {"improve.enabled", "false"},
