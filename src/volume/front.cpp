@@ -32,7 +32,7 @@ constexpr double kSmallest = 1.5;        ///< a round takes faces up to that tim
 constexpr std::uint16_t kMostTries = 3;  ///< of a face in a sweep
 constexpr std::size_t kFacesPerSlab = 1000, kMostSlabs = 64;
 constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may leave to the next cuts, about
-constexpr double kWorthSlabs = 0.15;    ///< share that is worth cutting again
+constexpr double kWorthSlabs = 0.02;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
 constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
 constexpr std::size_t kFew = 3;   ///< times so many faces in the front as there are to do: only those near are searched
@@ -177,7 +177,8 @@ class Front {
     const auto [low, high] = std::minmax_element(at.begin(), at.end());
     const double cuts = kMostDeferred * (*high - *low) * static_cast<double>(at.size()) / (2 * reach);
     const auto most = static_cast<std::size_t>(std::clamp(cuts, 0.0, static_cast<double>(kMostSlabs - 1)));
-    const std::size_t count = is_last ? 1 : 1 + std::min(active_.size() / kFacesPerSlab, most);
+    // A power of two, so that two and four threads have as much to do each.
+    const std::size_t count = is_last ? 1 : std::bit_floor(1 + std::min(active_.size() / kFacesPerSlab, most));
     std::vector<FrontSlab> slabs(1);
     slabs[0].axis = axis;
     for (std::size_t i = 1; i < count; ++i) {
