@@ -198,6 +198,15 @@ std::vector<OptionRow> build_table() {
   add(number_row(
       "improve.goals.max_nonortho", "", "", "worst non-orthogonality to work towards", "degrees from 0 to 90", 0, 90,
       [](auto& o) -> auto& { return o.improve.max_nonortho; }));
+  add(count_row(
+      "refine.levels", "--levels",
+      "grid with sizes 2^N times those asked for, then halve every edge N times; given surfaces that are kept become "
+      "finer by that",
+      "a whole number from 0 to 8", [](auto& o) -> auto& { return o.refine.levels; }));
+  add(text_row(
+      "refine.geometry", "--geometry", "FILE",
+      "with levels: surface (in the plane: lines) on which new boundary points are put; by default the given one",
+      [](auto& o) -> auto& { return o.refine.geometry; }));
   add(duration_row());
   add(memory_row());
   add(count_row(

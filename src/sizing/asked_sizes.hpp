@@ -14,6 +14,12 @@ namespace delfront {
 /// @brief Where no growth is asked for.
 inline constexpr double kDefaultGrowth = 1.2;
 
+/// @return the growth that the boundary's sizes keep, with options.steeper: then of a slope of at most 1/2
+double growth_of_boundary(const SizeOptions& options);
+
+/// @brief The growth whose slope (c - 1) / c is so many times that of the given one: at most 1/2, or the given one's.
+double steeper_growth(double growth, double times);
+
 /// @return the largest size of any boundary point, 0 without points
 double largest_size(const BoundarySizes& boundary);
 
