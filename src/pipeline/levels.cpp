@@ -85,9 +85,11 @@ void refine_levels(Outcome& outcome, const Options& options, const Model* geomet
   how.model = geometry;
   how.feature_angle_deg = options.input.feature_angle;
   outcome.mesh = refine_grid(outcome.mesh, how, report.refined, context);
-  for (Field& field : outcome.mesh.fields)
-    if (field.name == "h")
-      for (double& h : field.values) h /= coarsening(options);
+  for (Field& field : outcome.mesh.fields) {
+    if (field.name != "h" && field.name != "metric") continue;
+    const double factor = field.name == "h" ? 1 / coarsening(options) : std::pow(coarsening(options), 2);
+    for (double& value : field.values) value *= factor;
+  }
   for (std::string& warning : warnings_of(report.refined, options))
     outcome.report.warnings.push_back(std::move(warning));
   context.log(LogLevel::info,

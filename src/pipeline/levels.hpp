@@ -45,7 +45,7 @@ class CoarseLimit {
 
 /// @brief Halve the edges of a coarse grid as often as the options say; nothing where they say 0.
 ///
-/// A field "h" of the grid is divided by coarsening(). Quality is not measured anew.
+/// Fields "h" and "metric" of the grid become those of the finer sizes. Quality is not measured anew.
 /// @param geometry  where new boundary points belong; null: in the middle of their edges
 /// @throws as refine_grid()
 void refine_levels(Outcome& outcome, const Options& options, const Model* geometry, Context& context);

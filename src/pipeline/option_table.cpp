@@ -228,7 +228,8 @@ std::vector<OptionRow> build_table() {
   add(boolean_row(
       "output.compress", "VTU and VTP: compressed", [](auto& o) -> auto& { return o.output.compress; }));
   add(boolean_row(
-      "output.sizes", "the wanted size at each point goes with the grid, as the field h (VTU)",
+      "output.sizes",
+      "the wanted size at each point goes with the grid, as the field h (VTU); of stretched sizes the metric too",
       [](auto& o) -> auto& { return o.output.sizes; }));
   add(text_row("output.msh_version", "--msh-version", "V", "version of MSH files; by default 4.1",
                [](auto& o) -> auto& { return o.output.msh_version; }, {"2.2", "4.1"}));

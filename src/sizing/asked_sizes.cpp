@@ -68,6 +68,13 @@ void add_size_field(Mesh& mesh, const SizeField& size, const Context& context) {
   Field h{"h", Field::On::vertices, CellType::vertex, 1, std::vector<double>(mesh.points.size())};
   evaluate_sizes(size, mesh.points, h.values, context);
   mesh.fields.push_back(std::move(h));
+  if (size.is_isotropic()) return;
+  std::vector<Metric> metrics(mesh.points.size());
+  size.metrics(mesh.points, metrics);
+  Field metric{"metric", Field::On::vertices, CellType::vertex, 6, {}};
+  metric.values.reserve(6 * metrics.size());
+  for (const Metric& m : metrics) metric.values.insert(metric.values.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});
+  mesh.fields.push_back(std::move(metric));
 }
 
 std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,

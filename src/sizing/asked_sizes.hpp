@@ -47,7 +47,7 @@ struct LongEdges {
 LongEdges find_long_edges(std::span<const std::array<Point, 2>> edges, const SizeOptions& options,
                           const SizeField* asked, const Context& context);
 
-/// @brief The wanted sizes at the points of a grid, as its field "h".
+/// @brief The wanted sizes at the points of a grid, as its field "h"; of stretched ones also the tensors "metric".
 void add_size_field(Mesh& mesh, const SizeField& size, const Context& context);
 
 /// @brief The lesser of both, clamped to the options' hmin and hmax.
