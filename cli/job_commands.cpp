@@ -257,6 +257,8 @@ class JobCommand : public Command {
     print_mesh_facts(result.mesh);
     const QualityReport& quality = result.report.quality;
     if (quality.num_cells) print_quality(quality, 0);
+    if (const LevelsReport& levels = result.report.levels; levels.refined.levels > 0)
+      fmt::print("levels         {}: from {} coarse cells\n", levels.refined.levels, with_commas(levels.coarse_cells));
     const RecoveryReport& recovery = result.report.recovery;
     if (recovery.steiner_left)
       fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);
