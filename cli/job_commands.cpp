@@ -259,6 +259,10 @@ class JobCommand : public Command {
     if (quality.num_cells) print_quality(quality, 0);
     if (const LevelsReport& levels = result.report.levels; levels.refined.levels > 0)
       fmt::print("levels         {}: from {} coarse cells\n", levels.refined.levels, with_commas(levels.coarse_cells));
+    const SurfaceGridReport& grid = result.report.surface_grid;
+    if (grid.triangles)
+      fmt::print("new surface    {} triangles (given: {}), angles from {:.1f} degrees, at most {:.3g} off\n",
+                 grid.triangles, grid.triangles_given, grid.min_angle_deg, grid.largest_distance);
     const RecoveryReport& recovery = result.report.recovery;
     if (recovery.steiner_left)
       fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);

@@ -2,6 +2,7 @@
 """Reading what a tool wrote, and its quality by one routine for all. Large files are read in parts."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -74,8 +75,11 @@ def read_tetgen(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def measure_tets(points: np.ndarray, tets: np.ndarray) -> dict:
-    """Count, volume, worst dihedral angles, share below 10 degrees, mean eta. Orientation as the tool left it."""
-    volume_sum = eta_sum = 0.0
+    """Count, volume, worst dihedral angles, mean of each tet's smallest, share of those below 10 degrees, mean eta.
+
+    Orientation as the tool left it.
+    """
+    volume_sum = eta_sum = smallest_sum = 0.0
     below, low, high = 0, 180.0, 0.0
     faces = [(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)]
     for first in range(0, len(tets), PART_CELLS):
@@ -91,6 +95,7 @@ def measure_tets(points: np.ndarray, tets: np.ndarray) -> dict:
         low, high = min(low, float(smallest.min())), max(high, float(angles.max()))
         volume_sum += float(volume.sum())
         eta_sum += float((12 * np.cbrt(3 * volume) ** 2 / squares).sum())
+        smallest_sum += float(smallest.sum())
         below += int((smallest < 10).sum())
     count = max(len(tets), 1)
     return {
@@ -98,9 +103,60 @@ def measure_tets(points: np.ndarray, tets: np.ndarray) -> dict:
         "volume": volume_sum,
         "min_dihedral": low,
         "max_dihedral": high,
+        "mean_min_dihedral": smallest_sum / count,
         "below_10": below / count,
         "eta": eta_sum / count,
     }
+
+
+def read_vtu(path: Path) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """Points, tets and fields of points of a VTU of ours: one piece, appended raw data, not compressed."""
+    data = path.read_bytes()
+    start = data.index(b"_", data.index(b"<AppendedData")) + 1
+    head = data[:start].decode("ascii", "replace")
+    kinds = {"Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "u1"}
+
+    def arrays(section: str) -> dict[str, np.ndarray]:
+        found = {}
+        for tag in re.findall(r"<DataArray [^>]*>", re.search(rf"<{section}>(.*?)</{section}>", head, re.S)[1]):
+            words = dict(re.findall(r'(\w+)="([^"]*)"', tag))
+            place, kind = start + int(words["offset"]), np.dtype(kinds[words["type"]])
+            size = int(np.frombuffer(data, "<u8", 1, place)[0])
+            found[words["Name"]] = np.frombuffer(data, kind, size // kind.itemsize, place + 8)
+        return found
+
+    cells = arrays("Cells")
+    first = cells["offsets"][cells["types"] == 10] - 4
+    tets = cells["connectivity"][first[:, None] + np.arange(4)].astype(np.int32)
+    return arrays("Points")["Points"].reshape(-1, 3), tets, arrays("PointData") if "<PointData>" in head else {}
+
+
+def sample_edges(tets: np.ndarray, most: int = 400_000) -> np.ndarray:
+    """About `most` edges at the most, each edge of the grid with the same chance and always the same: shape (n, 2)."""
+    share = min(1.0, most / max(1.2 * len(tets), 1))
+    kept = []
+    for first in range(0, len(tets), PART_CELLS):
+        for i, j in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]:
+            ends = np.sort(tets[first : first + PART_CELLS][:, [i, j]], axis=1).astype(np.uint64)
+            key = (ends[:, 0] << np.uint64(32)) | ends[:, 1]
+            mixed = (key * np.uint64(0x9E3779B97F4A7C15)) ^ (key >> np.uint64(29))
+            mixed = (mixed * np.uint64(0xBF58476D1CE4E5B9)) >> np.uint64(32)
+            kept.append(key[mixed < np.uint64(share * 2**32)])
+    keys = np.unique(np.concatenate(kept))
+    return np.stack([keys >> np.uint64(32), keys & np.uint64(0xFFFFFFFF)], axis=1).astype(np.int64)
+
+
+def edges_near(points: np.ndarray, tets: np.ndarray, size: Callable[[np.ndarray], np.ndarray]) -> dict:
+    """Of length / size: the share of edges with it within [0.8, 1.25], its mean, and the share within that range of it.
+
+    The size is asked at the middles of edges.
+    """
+    edges = sample_edges(tets)
+    ends = points[edges]
+    ratio = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / size(ends.mean(axis=1))
+    mean = float(ratio.mean())
+    near, alike = (((r >= 0.8) & (r <= 1.25)).mean() for r in (ratio, ratio / mean))
+    return {"edges_near": float(near), "edges_alike": float(alike), "edge_ratio": mean}
 
 
 def triangle_angles(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:

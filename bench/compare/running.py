@@ -26,6 +26,7 @@ class Tool:
     outputs: list[str] = field(default_factory=list)  # removed before each run; must be there afterwards
     extra_outputs: list[str] = field(default_factory=list)  # removed before each run
     environment: dict[str, str] = field(default_factory=dict)
+    details: Callable[[Path, str], dict] = lambda folder, log: {}  # further figures of each run
 
     def shown_command(self) -> str:
         """Without folders: what a reader would type."""
@@ -60,7 +61,7 @@ def run_once(tool: Tool, folder: Path, launcher: Path, time_limit: float) -> dic
         failure = f"failed (status {run['status']}): {last[:90]}"
     run["failure"] = failure
     run["phase"] = None if failure else tool.phase(folder, log)
-    return run
+    return run if failure else run | tool.details(folder, log)
 
 
 def run_interleaved(tools: list[Tool], folder: Path, launcher: Path, limits: Limits, stamp: str, say) -> list[dict]:

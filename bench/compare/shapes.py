@@ -168,9 +168,14 @@ def refine_to(points: np.ndarray, triangles: np.ndarray, tets: float) -> tuple[n
     return refined
 
 
-def write_surface(folder: Path, points: np.ndarray, triangles: np.ndarray) -> None:
-    """The same surface as OFF (delfront), .smesh (TetGen) and medit .mesh with a .geo (Gmsh)."""
+def write_surface(folder: Path, points: np.ndarray, triangles: np.ndarray, parts: np.ndarray | None = None) -> None:
+    """The same surface as OFF (delfront), .smesh (TetGen) and medit .mesh with a .geo (Gmsh).
+
+    `parts`: number of each triangle's closed surface, from 0: the outer one, then those of holes (of which TetGen's
+    file says nothing).
+    """
     n, m = len(points), len(triangles)
+    parts = np.zeros(m, int) if parts is None else parts
     with (folder / "s.off").open("w") as file:
         file.write(f"OFF\n{n} {m} 0\n")
         file.writelines(lines_of(COORDINATES, points))
@@ -185,8 +190,11 @@ def write_surface(folder: Path, points: np.ndarray, triangles: np.ndarray) -> No
         file.write(f"MeshVersionFormatted 2\nDimension\n3\nVertices\n{n}\n")
         file.writelines(lines_of(COORDINATES + " 1", points))
         file.write(f"Triangles\n{m}\n")
-        file.writelines(lines_of("%d %d %d 1", triangles + 1))
+        file.writelines(lines_of("%d %d %d %d", np.column_stack([triangles, parts]) + 1))
         file.write("End\n")
+    numbers = range(1, int(parts.max()) + 2)
     (folder / "fill.geo").write_text(
-        'Merge "s.mesh";\nSurface Loop(1) = {1};\nVolume(1) = {1};\nMesh.MeshSizeExtendFromBoundary = 1;\n'
+        'Merge "s.mesh";\n'
+        + "".join(f"Surface Loop({k}) = {{{k}}};\n" for k in numbers)
+        + f"Volume(1) = {{{', '.join(map(str, numbers))}}};\nMesh.MeshSizeExtendFromBoundary = 1;\n"
     )

@@ -14,6 +14,7 @@
 #include "delfront/refine_grid.hpp"
 #include "delfront/size_field.hpp"
 #include "delfront/surface_check.hpp"
+#include "delfront/surface_grid.hpp"
 
 namespace delfront {
 
@@ -73,6 +74,7 @@ struct LevelsReport {
 
 struct Report {
   SurfaceReport surface;
+  SurfaceGridReport surface_grid;  ///< where the surface was gridded anew
   RecoveryReport recovery;
   RefineReport refine;
   FrontReport front;
@@ -93,7 +95,7 @@ struct Outcome {
 ///               options.size that need more than the boundary (sources, formulas, files, …) are built into such a
 ///               field by build_job_size_field.
 /// @param geometry  where options.refine.levels is not 0: on whose surface new boundary points are put; null: the
-/// model's, where they are in the middle of their edges
+/// given model's, which moves them only where options.surface makes a coarser surface of it
 /// @throws InputError    the surface cannot bound a volume (places and reasons)
 /// @throws MeshingError  gridding failed after all recovery steps
 /// @throws LimitError, Cancelled

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "delfront/ids.hpp"
 #include "delfront/point.hpp"
 
 namespace delfront {
@@ -184,6 +185,12 @@ struct PlanarOptions {
   double min_angle = 30;          ///< degrees, goal
 };
 
+/// @brief How the surface that is given becomes the boundary of the grid.
+struct SurfaceOptions {
+  std::string method = "keep";  ///< keep: triangle for triangle; front, delaunay: gridded anew to the sizes asked for
+  std::vector<PatchId> kept = {};  ///< patches that keep their triangles all the same; set by the run
+};
+
 struct VolumeOptions {
   std::string method = "front-delaunay";  ///< front front-delaunay delaunay none
   bool core = true;                       ///< a regular lattice where sizes are at their largest, far from the boundary
@@ -227,6 +234,7 @@ struct Options {
   DomainOptions domain;
   std::vector<BoundaryOptions> boundaries;
   SizeOptions size;
+  SurfaceOptions surface;
   VolumeOptions volume;
   PlanarOptions planar;
   ImproveOptions improve;

@@ -34,6 +34,9 @@ Outcome generate(Model model, const Options& all_options, Context& context, std:
   const Options options = coarse_options(all_options);  // the same without levels
   Outcome outcome;
   Report& report = outcome.report;
+  const bool is_new_surface = all_options.refine.levels > 0 && options.surface.method != "keep";
+  const Model given = is_new_surface && !geometry ? model : Model();  // the true geometry of a coarser surface
+  if (is_new_surface && !geometry) geometry = &given;
   asked = coarse_sizes(std::move(asked), all_options, model.bounding_box(), context);
   Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
   refuse_too_many_cells(prepared, options.size, all_options.refine.levels, context);

@@ -92,13 +92,13 @@ void refine_levels(Outcome& outcome, const Options& options, const Model* geomet
   }
   for (std::string& warning : warnings_of(report.refined, options))
     outcome.report.warnings.push_back(std::move(warning));
-  context.log(LogLevel::info,
-              fmt::format("{} coarse cells became {}: every edge was halved {}; what is kept of the given boundary is "
-                          "kept coarse, each of its {} became {}",
-                          report.coarse_cells, report.refined.num_cells,
-                          how.levels == 1 ? "once" : fmt::format("{} times", how.levels),
-                          outcome.mesh.dimension == 2 ? "lines" : "triangles",
-                          1 << ((outcome.mesh.dimension - 1) * how.levels)));
+  context.log(
+      LogLevel::info,
+      fmt::format(
+          "{} coarse cells became {}: every edge was halved {}; a boundary that is kept as given is that "
+          "of the coarse grid, each of its {} became {}",
+          report.coarse_cells, report.refined.num_cells, how.levels == 1 ? "once" : fmt::format("{} times", how.levels),
+          outcome.mesh.dimension == 2 ? "lines" : "triangles", 1 << ((outcome.mesh.dimension - 1) * how.levels)));
 }
 
 Outcome generate_planar_in_levels(const PlanarDomain& domain, const Options& options, Context& context,

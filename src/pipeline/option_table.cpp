@@ -181,6 +181,11 @@ std::vector<OptionRow> build_table() {
   add(number_row(
       "planar.min_angle", "", "", "grids in the plane: smallest angle to work towards", "degrees from 0 to 40", 0, 40,
       [](auto& o) -> auto& { return o.planar.min_angle; }));
+  add(text_row(
+      "surface.method", "--surface-method", "keep|front|delaunay",
+      "the surface's triangles: keep the given ones, or make new ones of the sizes asked for, by a front or by a "
+      "front and Delaunay flips",
+      [](auto& o) -> auto& { return o.surface.method; }, {"keep", "front", "delaunay"}));
   add(text_row("volume.method", "", "", "how the volume is gridded; none: the surface only",
                [](auto& o) -> auto& { return o.volume.method; }, {"front-delaunay", "front", "delaunay", "none"}));
   add(boolean_row(

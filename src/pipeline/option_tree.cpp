@@ -348,7 +348,7 @@ std::string planned_note(const std::string& key_or_flag) {
       "domain.keep.seeds",
       "boundaries.*.select.id",
       "layers",
-      "surface",
+      "surface.elements",
       "volume.elements",
       "--heal",
       "--layers",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "delfront/errors.hpp"
+#include "pipeline/surface_job.hpp"
 #include "sizing/asked_sizes.hpp"
 
 namespace delfront {
@@ -37,6 +38,39 @@ std::vector<bool> far_field_patches(const Model& model) {
   std::vector<bool> is_far_field;
   for (const Patch& patch : model.patches) is_far_field.push_back(patch.kind == "farfield");
   return is_far_field;
+}
+
+/// A new surface is looked at as a given one is.
+void regrid(Model& model, const Options& options, const SizeField* asked, Report& report, Context& context) {
+  regrid_as_asked(model, options, asked, report.surface_grid, context);
+  const std::size_t turned = report.surface.reoriented;
+  report.surface = check_surface(model, context);
+  report.surface.reoriented = turned;
+  refuse_invalid(report.surface);
+}
+
+BoundaryGrid recover(Model& model, const Options& options, Report& report, Context& context) {
+  return tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+}
+
+/// A new surface that cannot be recovered gives way to the given one, which most often can.
+BoundaryGrid regrid_and_recover(Model& model, const Options& options, const SizeField* asked, Report& report,
+                                Context& context) {
+  const Model given = model;
+  const SurfaceReport of_given = report.surface;
+  try {
+    regrid(model, options, asked, report, context);
+    return recover(model, options, report, context);
+  } catch (const MeshingError& e) {
+    const Point at = e.places.empty() ? Point{} : e.places[0].at;
+    context.warn(fmt::format("the new surface cannot be filled, the given triangles are kept: {}", e.what()));
+    report.surface_grid = {};
+    report.surface_grid.fallbacks.push_back({SurfaceFallback::Kind::kept, "", at, e.what()});
+    report.surface = of_given;
+    report.recovery = {};
+    model = given;
+    return recover(model, options, report, context);
+  }
 }
 
 /// The size of every boundary vertex that the grid uses.
@@ -98,8 +132,9 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   report.surface = prepare_surface(model, context);
   refuse_invalid(report.surface);
   Prepared prepared;
-  prepared.grid = tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
-  warn_of_coarse_surface(model, options.size, asked.get(), context);
+  prepared.grid = options.surface.method == "keep" ? recover(model, options, report, context)
+                                                   : regrid_and_recover(model, options, asked.get(), report, context);
+  if (options.surface.method == "keep") warn_of_coarse_surface(model, options.size, asked.get(), context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;

@@ -162,6 +162,38 @@ Json to_json(const LevelsReport& r) {
           {"groups_not_in_geometry", r.refined.groups_not_in_model}};
 }
 
+Json to_json(const SurfaceGridReport& r) {
+  Json patches = Json::array(), fallbacks = Json::array();
+  for (const SurfacePatchReport& p : r.patches)
+    patches.push_back({{"name", p.name},
+                       {"triangles_given", p.triangles_given},
+                       {"triangles", p.triangles},
+                       {"min_angle", number(p.min_angle_deg)}});
+  for (const SurfaceFallback& f : r.fallbacks)
+    fallbacks.push_back({{"kind", f.kind == SurfaceFallback::Kind::kept ? "kept" : "remeshed"},
+                         {"patch", f.patch},
+                         {"at", to_json(f.at)},
+                         {"why", f.why}});
+  return {{"regions", r.regions},
+          {"lines", r.lines},
+          {"corners", r.corners},
+          {"triangles_given", r.triangles_given},
+          {"triangles", r.triangles},
+          {"points", r.points},
+          {"min_angle", number(r.min_angle_deg)},
+          {"mean_min_angle", number(r.mean_min_angle_deg)},
+          {"below_25_deg", r.below_25_deg},
+          {"largest_distance", number(r.largest_distance)},
+          {"largest_distance_at", to_json(r.largest_distance_at)},
+          {"shortest_edge", number(r.shortest_edge)},
+          {"longest_edge", number(r.longest_edge)},
+          {"front_steps", r.front_steps},
+          {"rounds", r.rounds},
+          {"sizes_lowered", r.sizes_lowered},
+          {"patches", patches},
+          {"fallbacks", fallbacks}};
+}
+
 Json groups_json(const Mesh& mesh, int dim) {
   std::vector<std::size_t> count(mesh.groups.size());
   for (const CellBlock& block : mesh.blocks)
@@ -307,6 +339,9 @@ std::string report_json(const JobResult& result, const Options& options, const s
         {"longest_side", number(result.scale.longest_side)},
         {"metres_per_unit", result.scale.metres_per_unit > 0 ? Json(result.scale.metres_per_unit) : Json(nullptr)}}},
       {"surface", to_json(result.report.surface)},
+      {"surface_grid", result.report.surface_grid.triangles || !result.report.surface_grid.fallbacks.empty()
+                           ? to_json(result.report.surface_grid)
+                           : Json(nullptr)},
       {"recovery", to_json(result.report.recovery)},
       {"refine", to_json(result.report.refine)},
       {"front", to_json(result.report.front)},

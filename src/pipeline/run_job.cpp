@@ -24,6 +24,7 @@
 #include "pipeline/report_json.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/size_survey.hpp"
+#include "pipeline/surface_job.hpp"
 
 namespace delfront {
 
@@ -162,6 +163,12 @@ void write_outputs(Run& run) {
 
 /// A surface alone: to look at it (geometry), or to write it, with its far field (surface).
 void stop_at_surface(Run& run, Model model) {
+  if (run.options.stop_after != "geometry" && run.options.surface.method != "keep") {
+    orient_shells(model, run.context);  // as before gridding, so that both give the same surface
+    if (run.far_field.is_valid()) run.options.surface.kept = {run.far_field};
+    const auto asked = build_job_size_field(run.options, model, model.bounding_box(), run.context);
+    regrid_as_asked(model, run.options, asked.get(), run.result.report.surface_grid, run.context);
+  }
   run.result.report.surface = check_surface(model, run.context);
   run.result.mesh = surface_mesh(model);
   if (run.options.stop_after == "geometry") {

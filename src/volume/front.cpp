@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
@@ -22,15 +24,62 @@ namespace {
 
 /// Sweep by sweep less is asked for (F17).
 constexpr FrontSettings kSweeps[] = {
-    {.radius = 1.25, .quality = 0.01, .wedge = 0.03, .clearance = 0.1, .to_points = 0.7, .to_faces = 0.45},
+    {.radius = 1.25, .quality = 0.01, .wedge = 0.06, .clearance = 0.05, .to_points = 0.6, .to_faces = 0.45},
     {.radius = 1.6, .quality = 0.01, .wedge = 0.001, .clearance = 0.0, .to_points = 0.4, .to_faces = 0.2},
     {.radius = 2.5, .quality = 1e-12, .wedge = 0, .clearance = 0, .to_points = 0.2, .to_faces = 0.05, .is_local = true},
 };
 constexpr double kSmallest = 1.5;        ///< a round takes faces up to that times the smallest
 constexpr std::uint16_t kMostTries = 3;  ///< of a face in a sweep
-constexpr std::size_t kFacesPerSlab = 3000, kMostSlabs = 64;
+constexpr std::size_t kFacesPerSlab = 1000, kMostSlabs = 64;
+constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may leave to the next cuts, about
+constexpr double kWorthSlabs = 0.02;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
-constexpr int kPhases = 4;  ///< three axes, then one piece
+constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
+constexpr std::size_t kFew = 3;   ///< times so many faces in the front as there are to do: only those near are searched
+constexpr int kPhases = 4;        ///< three axes, then one piece
+
+/// Cells of a lattice round some boxes, told by hashes: a box that is near one of them is always found, others at
+/// times.
+class CellMarks {
+ public:
+  CellMarks(std::size_t boxes, double margin) : margin_(margin), side_(4 * margin) {
+    bits_.resize(std::bit_ceil(std::size_t{64} * boxes + 1));
+  }
+  void add(Box box) {
+    const Point around{margin_, margin_, margin_};
+    box.low = box.low - around;
+    box.high = box.high + around;
+    visit(box, [&](std::size_t bit) { return bits_[bit] = true, false; });
+  }
+  bool are_near(const Box& box) const {
+    if (box.longest_side() > side_) return true;
+    return visit(box, [&](std::size_t bit) { return bool(bits_[bit]); });
+  }
+
+ private:
+  template <class Visit>
+  bool visit(const Box& box, Visit&& stop_at) const {
+    std::int64_t low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+      low[k] = static_cast<std::int64_t>(std::floor(box.low[k] / side_));
+      high[k] = static_cast<std::int64_t>(std::floor(box.high[k] / side_));
+    }
+    for (std::int64_t i = low[0]; i <= high[0]; ++i)
+      for (std::int64_t j = low[1]; j <= high[1]; ++j)
+        for (std::int64_t k = low[2]; k <= high[2]; ++k)
+          if (stop_at(bit_of(i, j, k))) return true;
+    return false;
+  }
+  std::size_t bit_of(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    auto h = static_cast<std::uint64_t>(i) * 0x9e3779b97f4a7c15ull;
+    h = (h ^ (h >> 29) ^ static_cast<std::uint64_t>(j)) * 0xbf58476d1ce4e5b9ull;
+    h = (h ^ (h >> 31) ^ static_cast<std::uint64_t>(k)) * 0x94d049bb133111ebull;
+    return (h >> 20) & (bits_.size() - 1);
+  }
+
+  double margin_, side_;
+  std::vector<bool> bits_;
+};
 
 class Front {
  public:
@@ -41,17 +90,15 @@ class Front {
   }
 
   FrontReport run() {
-    for (const FrontSettings& settings : kSweeps) {
-      if (waiting_.empty()) break;
-      settings_ = &settings;
-      sweep();
-      ++report_.sweeps;
-      waiting_.swap(skipped_);
-      keep_live(waiting_);
-      for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
-    }
+    for (const FrontSettings& settings : kSweeps) sweep(settings);
     report_.sides_left = waiting_.size();
-    const auto left = fill_cavities(front_, waiting_, report_, context_);
+    std::vector<std::uint32_t> left = fill_cavities(front_, waiting_, report_, context_);
+    for (int again = 0; again < kSweepsAgain && !left.empty(); ++again) {
+      report_.cavities_left = 0;
+      live_ = waiting_ = empty_around(front_, left, report_);
+      for (const FrontSettings& settings : kSweeps) sweep(settings);
+      left = fill_cavities(front_, waiting_, report_, context_);
+    }
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     front_.join();
     fill_report();
@@ -59,20 +106,32 @@ class Front {
   }
 
  private:
-  void sweep() {
+  void sweep(const FrontSettings& settings) {
+    if (waiting_.empty()) return;
+    settings_ = &settings;
+    ++report_.sweeps;
     while (choose_faces()) {
       context_.progress("front", c_.num_live(), 0, "cells");
       context_.check_cells(c_.num_live());
-      for (int phase = 0; phase < kPhases && !active_.empty(); ++phase) run_phase(phase);
+      const auto few = static_cast<std::size_t>(kWorthSlabs * static_cast<double>(active_.size()));
+      for (int phase = 0; phase < kPhases && !active_.empty(); ++phase)
+        run_phase(phase > 0 && active_.size() <= few ? kPhases - 1 : phase);
       ++report_.rounds;
     }
+    waiting_.swap(skipped_);
+    skipped_.clear();
+    keep_live(waiting_);
+    for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
   }
 
   /// Slots are used again, so a number may stand there twice.
-  void keep_live(std::vector<std::uint32_t>& faces) const {
-    std::erase_if(faces, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
-    std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  void keep_live(std::vector<std::uint32_t>& faces) {
+    is_listed_.assign(front_.num_slots(), false);
+    std::erase_if(faces, [&](std::uint32_t f) {
+      if (!front_.face(f).is_alive || is_listed_[f]) return true;
+      is_listed_[f] = true;
+      return false;
+    });
   }
 
   /// F6: those that would make the smallest elements, along a curve.
@@ -98,7 +157,7 @@ class Front {
     const HilbertCurve curve(box);
     order_.clear();
     for (const std::uint32_t f : active_) order_.push_back({curve.key(middle(f)), f});
-    std::sort(order_.begin(), order_.end());
+    radix_sort(order_, context_.threads);
     for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = order_[i].second;
   }
 
@@ -107,11 +166,19 @@ class Front {
     return (1.0 / 3) * (c_.point(n[0]) + c_.point(n[1]) + c_.point(n[2]));
   }
 
-  /// Cuts where as many faces lie on either side.
+  /// Cuts where as many faces lie on either side, no more than leave most faces to one slab.
   std::vector<FrontSlab> cut_slabs(int axis, bool is_last) const {
-    const std::size_t count = is_last ? 1 : std::clamp<std::size_t>(active_.size() / kFacesPerSlab, 1, kMostSlabs);
     std::vector<double> at;
-    for (const std::uint32_t f : active_) at.push_back(middle(f)[axis]);
+    double reach = 0;
+    for (const std::uint32_t f : active_) {
+      at.push_back(middle(f)[axis]);
+      reach += 2 * settings_->radius * static_cast<double>(front_.face(f).size);
+    }
+    const auto [low, high] = std::minmax_element(at.begin(), at.end());
+    const double cuts = kMostDeferred * (*high - *low) * static_cast<double>(at.size()) / (2 * reach);
+    const auto most = static_cast<std::size_t>(std::clamp(cuts, 0.0, static_cast<double>(kMostSlabs - 1)));
+    // A power of two, so that two and four threads have as much to do each.
+    const std::size_t count = is_last ? 1 : std::bit_floor(1 + std::min(active_.size() / kFacesPerSlab, most));
     std::vector<FrontSlab> slabs(1);
     slabs[0].axis = axis;
     for (std::size_t i = 1; i < count; ++i) {
@@ -181,9 +248,14 @@ class Front {
     box.low[slab.axis] = std::max(box.low[slab.axis], slab.low);
     box.high[slab.axis] = std::min(box.high[slab.axis], slab.high);
     worker.tree.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
+    const bool are_few = kFew * faces.size() < live_.size();
+    CellMarks marks(are_few ? faces.size() : 0, margin);
+    if (are_few)
+      for (const std::uint32_t f : faces) marks.add(front_.box(f));
     for (const std::uint32_t f : live_) {
       if (!front_.face(f).is_alive) continue;
-      if (box.overlaps(front_.box(f))) worker.add_to_tree(f);
+      const Box of_face = front_.box(f);
+      if (box.overlaps(of_face) && (!are_few || marks.are_near(of_face))) worker.add_to_tree(f);
     }
   }
 
@@ -211,6 +283,7 @@ class Front {
   const FrontSettings* settings_ = nullptr;
   std::vector<std::uint32_t> waiting_, skipped_, active_;  ///< faces
   std::vector<std::uint32_t> live_;                        ///< all faces of the front; some that were
+  std::vector<bool> is_listed_;                            ///< scratch of keep_live()
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;
   FrontCounts counts_;
   FrontReport report_;

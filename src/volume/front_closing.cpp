@@ -290,6 +290,27 @@ std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<st
   return left;
 }
 
+std::vector<std::uint32_t> empty_around(FrontStore& front, const std::vector<std::uint32_t>& faces,
+                                        FrontReport& report) {
+  std::vector<std::uint32_t> near, made;
+  for (const std::uint32_t f : faces)
+    for (const VertexIndex v : front.nodes(f))
+      for (std::uint32_t e = front.first_at(v); e != kNoIndex; e = front.next_at(e)) near.push_back(e >> 2);
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::vector<TetIndex> behind;
+  for (const std::uint32_t f : near)
+    if (!front.face(f).is_boundary) behind.push_back(front.face(f).behind >> 2);
+  std::sort(behind.begin(), behind.end());
+  behind.erase(std::unique(behind.begin(), behind.end()), behind.end());
+  for (const TetIndex t : behind) front.remove_tet(t, made);
+  report.cells_emptied += behind.size();
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t f = 0; f < front.num_slots(); ++f)
+    if (front.face(f).is_alive) all.push_back(f);
+  return all;
+}
+
 namespace {
 
 /// The cavities as a model of their own: one patch, faces turned outwards.
@@ -331,7 +352,7 @@ namespace {
 void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report, Context& context) {
   CavityModel cavity = model_of(front, faces);
   RecoveryReport recovery;
-  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, {}, {false}, recovery, context);
+  const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, DomainOptions(), {false}, recovery, context);
   if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
   const TetComplex& from = grid.complex;
   TetComplex& c = front.complex();

@@ -17,6 +17,11 @@ namespace delfront {
 std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<std::uint32_t>& faces,
                                          FrontReport& report, Context& context);
 
+/// @brief Take away the tets behind the faces at the corners of what is left, so that it can be gridded anew.
+/// @return all faces of the front
+std::vector<std::uint32_t> empty_around(FrontStore& front, const std::vector<std::uint32_t>& faces,
+                                        FrontReport& report);
+
 /// @brief Fill closed cavities by constrained Delaunay with points inside alone (T2).
 /// @throws MeshingError  where boundary recovery gives up, or would have to divide faces
 void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report,

@@ -89,7 +89,7 @@ void Neighbourhood::add_wedge(const Face& face) {
   if (k[(far + 1) % 3] != (start == 2 ? 0u : start + 1)) return;
   Wedge& w = wedge_[start];
   const double c = dot(w.inwards, at(k[far]) - w.middle), s = height_[k[far]] - height_[start];
-  const double l = std::max(std::hypot(c, s), 1e-300);
+  const double l = std::max(std::sqrt(c * c + s * s), 1e-300);
   const auto half_turns = [](double cosine, double sine) { return sine >= 0 ? 1 - cosine : 3 + cosine; };
   if (w.is_there && half_turns(w.cosine, w.sine) <= half_turns(c / l, s / l)) return;
   w.cosine = c / l, w.sine = s / l, w.apex = k[far], w.is_there = true;

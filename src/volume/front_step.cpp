@@ -15,12 +15,12 @@ namespace {
 
 constexpr std::uint64_t kTimed = 16;
 constexpr double kShortest = 0.6, kLongest = 1.7;  ///< wanted edge, of the mean edge of the face
-constexpr double kLowest = 0.35;                   ///< height of the ideal point, of the wanted edge
-constexpr double kPreferOld = 0.7;                 ///< a new point's score, times its quality: old ones need no more
-constexpr double kReuse = 0.7;  ///< an old point nearer than that to the ideal one, in wanted edges, is it
+constexpr double kLowest = 0.5;                    ///< height of the ideal point, of the wanted edge
+constexpr double kPreferOld = 1.0;  ///< weighs a new point, beside 1 for old ones far from the ideal place
+constexpr double kReuse = 0.7;      ///< an old point nearer than that to the ideal one, in wanted edges, is it
 constexpr double kNearBonus = 4;
 constexpr double kNeedle = 0.04;   ///< area over the squared mean edge; of the regular triangle 0.43
-constexpr double kLongEdge = 1.1;  ///< wanted edges; beyond, a candidate is worth less
+constexpr double kLongEdge = 1.0;  ///< wanted edges; beyond, a candidate is worth less
 constexpr double kHeights[] = {1.0, 0.75, 0.5};
 
 double seconds_now() {

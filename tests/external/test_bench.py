@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""bench/compare_peers.py and bench/stage_breakdown.py on tiny inputs: what stands in the tables is right."""
+"""The scripts of bench/ on tiny inputs: what stands in the tables is right."""
 
 import json
 import os
@@ -124,7 +124,24 @@ class Shapes(unittest.TestCase):
         found = grids.measure_tets(points, np.array([[0, 1, 2, 3]]))
         angle = np.degrees(np.arccos(1 / 3))
         np.testing.assert_allclose([found["min_dihedral"], found["max_dihedral"]], angle, rtol=1e-12)
+        np.testing.assert_allclose(found["mean_min_dihedral"], angle, rtol=1e-12)
         np.testing.assert_allclose([found["volume"], found["eta"], found["below_10"]], [8 / 3, 1, 0], rtol=1e-12)
+
+    def test_edges_are_counted_once_and_sampled_evenly(self):
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], float)
+        tets = np.array([[0, 1, 2, 3], [4, 3, 2, 1]])  # three edges of length 1, six of sqrt 2, of which three shared
+        self.assertEqual(len(grids.sample_edges(tets)), 9)
+        near = grids.edges_near(points, tets, lambda places: np.ones(len(places)))
+        np.testing.assert_allclose(near["edges_near"], 3 / 9)
+        np.testing.assert_allclose(near["edge_ratio"], (3 + 6 * 2**0.5) / 9)
+        np.testing.assert_allclose(near["edges_alike"], 6 / 9)  # 1 is 0.78 of the mean
+        chain = np.arange(40_000)[:, None] + np.arange(4)
+        every = {tuple(edge) for edge in grids.sample_edges(chain, 10**9)}
+        some = grids.sample_edges(chain, 6_000)
+        self.assertEqual(len(every), 3 * 40_000 + 3)
+        self.assertTrue({tuple(edge) for edge in some} <= every)
+        self.assertAlmostEqual(len(some) / (len(every) / 8), 1, delta=0.05)
+        self.assertLess(abs(some.mean() / 20_000 - 1), 0.03)
 
 
 @unittest.skipUnless(DELFRONT, "DELFRONT names no program")
@@ -167,6 +184,32 @@ class WholeRuns(unittest.TestCase):
             self.assertLess(float(row[3]), float(row[5]))
         for row in rows:
             self.assertNotIn("tets)", row[1])  # Gmsh makes as many as we do
+
+    def test_the_front_beside_peers_on_small_surfaces(self):
+        done = bench("front.py", "--quick", "--delfront", DELFRONT, "--docs", self.page, "--write-docs")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.strip(), self.page.read_text().strip())
+        tables_of_page, rows = [], []
+        for line in [*done.stdout.splitlines(), ""]:
+            if line.startswith("|"):
+                rows.append([word.strip() for word in line.split("|")[1:-1]])
+            elif rows:
+                tables_of_page.append([dict(zip(rows[0], row)) for row in rows[2:]])
+                rows = []
+        self.assertEqual(len(tables_of_page), 6)
+        for speed, quality in (tables_of_page[2:4], tables_of_page[4:6]):
+            ours = [row for row in speed if row["tool"].startswith("delfront")]
+            self.assertEqual(len(ours), 9)
+            for row in ours:
+                self.assertGreater(float(row["gridding s"]), 0)
+                self.assertLess(float(row["gridding s"]), float(row["whole s"]) + 0.01)
+                self.assertEqual("same bytes as -j" in row["remark"], ", raw" in row["tool"], row)
+            for row in speed:
+                self.assertFalse("off by" in row.get("remark", "") or "other bytes" in row.get("remark", ""), row)
+            angles = {row["tool"]: float(row["worst °"]) for row in quality}
+            self.assertGreater(angles["delfront front, improved"], angles["delfront front, raw"])
+            fronts = [row for row in quality if row["sweeps"] != "–"]
+            self.assertEqual({row["tool"] for row in fronts}, {"delfront front, raw", "delfront front, improved"})
 
     def test_the_stage_table_adds_up(self):
         done = bench("stage_breakdown.py", "--delfront", DELFRONT, "--tets", "1e4", "--points", "1e4", "--threads", "1")

@@ -109,6 +109,23 @@ TEST(Levels, new_boundary_points_are_on_the_geometry) {
   EXPECT_GT(outcome.report.levels.refined.points_on_surface, 1000u);
 }
 
+TEST(Levels, a_surface_gridded_anew_is_coarse_and_its_new_points_are_on_the_given_one) {
+  const Model fine_sphere = sphere_model(5);
+  Options options = in_levels(1);
+  options.surface.method = "front";
+  options.size.hmax = Length{0.15, ""};
+  Context context;
+  const Outcome outcome = generate(fine_sphere, options, context);
+  expect_valid(outcome.mesh);
+  const CellBlock& triangles = *outcome.mesh.find_block(CellType::triangle);
+  double off = 0;
+  for (const VertexId v : triangles.vertices) off = std::max(off, std::abs(length(outcome.mesh.points[v]) - 1));
+  EXPECT_LT(off, 1e-3);
+  EXPECT_GT(outcome.report.levels.refined.points_on_surface, 300u);
+  EXPECT_EQ(triangles.size(), 4 * outcome.report.surface_grid.triangles);
+  EXPECT_GT(share_of_good_edges(outcome.mesh, 0.14), 0.99);
+}
+
 TEST(Levels, the_field_of_sizes_is_the_final_one_and_keeps_the_growth) {
   Context context;
   Options options = in_levels(1);

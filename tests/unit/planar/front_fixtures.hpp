@@ -182,7 +182,7 @@ inline Filled fill_domain(const PlanarDomain& domain, const Options& options, st
   for (const double area : areas) total += area;
   for (std::size_t r = 0; r < areas.size(); ++r) EXPECT_NEAR(after[r], areas[r], 1e-11 * total);
   measure(grid, *size, filled);
-  EXPECT_EQ(filled.num_triangles, filled.report.triangles + filled.report.closed_by_delaunay);
+  EXPECT_EQ(filled.num_triangles, filled.report.cells + filled.report.closed_by_delaunay);
   filled.num_regions = areas.size();
   return filled;
 }
