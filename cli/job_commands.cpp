@@ -257,6 +257,8 @@ class JobCommand : public Command {
     print_mesh_facts(result.mesh);
     const QualityReport& quality = result.report.quality;
     if (quality.num_cells) print_quality(quality, 0);
+    if (const LevelsReport& levels = result.report.levels; levels.refined.levels > 0)
+      fmt::print("levels         {}: from {} coarse cells\n", levels.refined.levels, with_commas(levels.coarse_cells));
     const SurfaceGridReport& grid = result.report.surface_grid;
     if (grid.triangles)
       fmt::print("new surface    {} triangles (given: {}), angles from {:.1f} degrees, at most {:.3g} off\n",

@@ -11,6 +11,7 @@
 #include "delfront/mesh.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
+#include "delfront/refine_grid.hpp"
 #include "delfront/size_field.hpp"
 #include "delfront/surface_check.hpp"
 #include "delfront/surface_grid.hpp"
@@ -65,13 +66,20 @@ struct ImproveReport {
   std::size_t below_goal_forced = 0;  ///< … of these: all four vertices on the boundary
 };
 
+/// @brief What gridding with larger sizes and halving every edge afterwards did (F19).
+struct LevelsReport {
+  std::size_t coarse_cells = 0, coarse_points = 0;
+  RefineGridReport refined;  ///< its levels: 0 where the job asks for none
+};
+
 struct Report {
   SurfaceReport surface;
   SurfaceGridReport surface_grid;  ///< where the surface was gridded anew
   RecoveryReport recovery;
   RefineReport refine;
   FrontReport front;
-  ImproveReport improve;
+  ImproveReport improve;  ///< of the coarse grid, where there are levels
+  LevelsReport levels;
   QualityReport quality;
   std::vector<std::string> warnings;
 };
@@ -86,11 +94,13 @@ struct Outcome {
 /// in
 ///               options.size that need more than the boundary (sources, formulas, files, …) are built into such a
 ///               field by build_job_size_field.
+/// @param geometry  where options.refine.levels is not 0: on whose surface new boundary points are put; null: the
+/// given model's, which moves them only where options.surface makes a coarser surface of it
 /// @throws InputError    the surface cannot bound a volume (places and reasons)
 /// @throws MeshingError  gridding failed after all recovery steps
 /// @throws LimitError, Cancelled
 /// @par Threads  the same grid for any number
 Outcome generate(Model model, const Options& options, Context& context,
-                 std::shared_ptr<const SizeField> asked = nullptr);
+                 std::shared_ptr<const SizeField> asked = nullptr, const Model* geometry = nullptr);
 
 }  // namespace delfront

@@ -164,6 +164,7 @@ struct SizeOptions {
   std::vector<SizeOnOptions> on;
   std::vector<std::string> without;  ///< groups of sources that are left out
   double time = 0;                   ///< for sources that move
+  double steeper = 1;                ///< no key: sizes rise so many times as fast as growth says (see coarse_options)
 };
 
 /// @brief One entry of [[planar.curve]] (D5): a line of the boundary, or in a region, given by points.
@@ -202,6 +203,12 @@ struct ImproveOptions {
   int max_passes = 8;
 };
 
+/// @brief Coarse at first, then every edge halved (F19).
+struct LevelOptions {
+  int levels = 0;        ///< times; sizes of the grid before are 2^levels those asked for
+  std::string geometry;  ///< file on whose surface (in the plane: lines) new boundary points are put
+};
+
 struct LimitOptions {
   double time = 0;           ///< seconds, 0: none
   std::uint64_t memory = 0;  ///< bytes, 0: none
@@ -231,6 +238,7 @@ struct Options {
   VolumeOptions volume;
   PlanarOptions planar;
   ImproveOptions improve;
+  LevelOptions refine;
   LimitOptions limits;
   OutputOptions output;
   std::string stop_after;  ///< last stage to run: "" all, geometry, surface, volume, improve, write

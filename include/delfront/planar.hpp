@@ -91,7 +91,7 @@ std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, 
 ///
 /// With options.planar.boundary = "keep" the boundary's points are the given ones, bit for bit, in the same order, and
 /// no other point lies on it; with "split" segments are divided where sizes or angles ask for it. Sizes come from the
-/// boundary and options.size; `asked`, where given, lowers them.
+/// boundary and options.size; `asked`, where given, lowers them. options.refine is seen to by run_job.
 /// @throws InputError    segments that cross (places), nothing bounded, a coordinate not finite
 /// @throws LimitError, Cancelled
 /// @par Threads  one; the same grid for any number

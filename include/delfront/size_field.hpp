@@ -73,6 +73,10 @@ std::unique_ptr<SizeField> build_boundary_size_field(const BoundarySizes& bounda
 std::unique_ptr<SizeField> combine_size_fields(std::vector<std::shared_ptr<const SizeField>> parts, double hmin,
                                                double hmax);
 
+/// @brief Sizes of a field, and lengths of its metrics, times a factor; its bounds too.
+/// @throws UsageError  factor not finite and positive
+std::shared_ptr<const SizeField> scale_sizes(std::shared_ptr<const SizeField> field, double factor);
+
 /// @brief A field with sizes that rise by at most (growth - 1) / growth with distance: the given one where it keeps to
 /// that, else lowered.
 ///

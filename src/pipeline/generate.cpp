@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole run on one screen: look, recover the boundary, sizes, points, improvement.
+// The whole run on one screen: look, recover the boundary, sizes, points, improvement, levels.
 #include "delfront/generate.hpp"
 
 #ifdef __GLIBC__
@@ -7,6 +7,7 @@
 #endif
 
 #include "improve/improve.hpp"
+#include "pipeline/levels.hpp"
 #include "pipeline/prepare.hpp"
 #include "pipeline/size_survey.hpp"
 #include "sizing/asked_sizes.hpp"
@@ -27,12 +28,19 @@ void give_back_free_memory() {
 
 }  // namespace
 
-Outcome generate(Model model, const Options& options, Context& context, std::shared_ptr<const SizeField> asked) {
+Outcome generate(Model model, const Options& all_options, Context& context, std::shared_ptr<const SizeField> asked,
+                 const Model* geometry) {
   check_floating_point_mode();
+  const Options options = coarse_options(all_options);  // the same without levels
   Outcome outcome;
   Report& report = outcome.report;
+  const bool is_new_surface = all_options.refine.levels > 0 && options.surface.method != "keep";
+  const Model given = is_new_surface && !geometry ? model : Model();  // the true geometry of a coarser surface
+  if (is_new_surface && !geometry) geometry = &given;
+  asked = coarse_sizes(std::move(asked), all_options, model.bounding_box(), context);
   Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
-  refuse_too_many_cells(prepared, options.size, context);
+  refuse_too_many_cells(prepared, options.size, all_options.refine.levels, context);
+  CoarseLimit limit(context, all_options, false);
   auto [grid, size] = std::move(prepared);
   const bool is_front = options.volume.method == "front";
   if (is_front) report.front = fill_by_front(grid, *size, context);
@@ -40,10 +48,12 @@ Outcome generate(Model model, const Options& options, Context& context, std::sha
     report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();
   if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
-  if (!options.output.sizes) size.reset();
+  if (!all_options.output.sizes) size.reset();
   give_back_free_memory();
   outcome.mesh = to_mesh(std::move(grid), model, context.threads);
-  if (size) add_size_field(outcome.mesh, *size, context);
+  limit.end();
+  refine_levels(outcome, all_options, geometry, context);
+  if (size) add_size_field(outcome.mesh, *scale_sizes(size, 1 / coarsening(all_options)), context);
   give_back_free_memory();
   const StageTimer timer(context, "measure");
   report.quality = measure_quality(outcome.mesh, context);

@@ -60,6 +60,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 /// No file may be written over an input or over another output of the same run.
 void check_files_differ(const Options& options) {
   std::vector<std::string> taken = options.input.files;
+  if (!options.refine.geometry.empty()) taken.push_back(options.refine.geometry);
   const auto add = [&](const std::string& path, const std::string& key) {
     if (path.empty()) return;
     if (const std::string* other = find_same_file(path, taken))
@@ -148,6 +149,19 @@ static void check_sizes(const Options& options) {
                      "number of tetrahedra (in the plane 0.4 of that of triangles)");
 }
 
+static void check_levels(const Options& options) {
+  constexpr int kMostLevels = 8;
+  const LevelOptions& refine = options.refine;
+  if (refine.levels > kMostLevels)
+    throw usage_error(options, "refine.levels",
+                      fmt::format("{} levels would make 8^{} of every cell; give {} or fewer (1 or 2 are usual)",
+                                  refine.levels, refine.levels, kMostLevels));
+  if (refine.geometry.empty()) return;
+  if (refine.levels == 0)
+    throw usage_error(options, "refine.geometry", "there is no new point to put on it; say how often: refine.levels");
+  with_place(options, "refine.geometry", [&] { format_of(refine.geometry); });
+}
+
 void check_job(const Options& options) {
   if (options.input.files.empty() && options.planar.curves.empty())
     throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
@@ -155,6 +169,7 @@ void check_job(const Options& options) {
     throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
   check_domain(options);
   check_sizes(options);
+  check_levels(options);
   if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
     throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
   with_place(options, "output.require", [&] { try_gates(options.output.require); });

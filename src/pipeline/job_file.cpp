@@ -152,9 +152,9 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
 
 /// Keys whose texts are paths; entries of a list of tables are taken by the names of the tables.
 bool is_path(const std::string& key) {
-  static const std::set<std::string> paths = {"input.files",        "output.files",     "output.report",
-                                              "output.defects",     "size.background",  "size.background.file",
-                                              "size.solution.file", "size.source.file", "size.box.file"};
+  static const std::set<std::string> paths = {
+      "input.files",          "output.files",       "output.report",    "output.defects", "size.background",
+      "size.background.file", "size.solution.file", "size.source.file", "size.box.file",  "refine.geometry"};
   return paths.count(key) > 0;
 }
 

@@ -203,6 +203,15 @@ std::vector<OptionRow> build_table() {
   add(number_row(
       "improve.goals.max_nonortho", "", "", "worst non-orthogonality to work towards", "degrees from 0 to 90", 0, 90,
       [](auto& o) -> auto& { return o.improve.max_nonortho; }));
+  add(count_row(
+      "refine.levels", "--levels",
+      "grid with sizes 2^N times those asked for, then halve every edge N times; given surfaces that are kept become "
+      "finer by that",
+      "a whole number from 0 to 8", [](auto& o) -> auto& { return o.refine.levels; }));
+  add(text_row(
+      "refine.geometry", "--geometry", "FILE",
+      "with levels: surface (in the plane: lines) on which new boundary points are put; by default the given one",
+      [](auto& o) -> auto& { return o.refine.geometry; }));
   add(duration_row());
   add(memory_row());
   add(count_row(
@@ -224,7 +233,8 @@ std::vector<OptionRow> build_table() {
   add(boolean_row(
       "output.compress", "VTU and VTP: compressed", [](auto& o) -> auto& { return o.output.compress; }));
   add(boolean_row(
-      "output.sizes", "the wanted size at each point goes with the grid, as the field h (VTU)",
+      "output.sizes",
+      "the wanted size at each point goes with the grid, as the field h (VTU); of stretched sizes the metric too",
       [](auto& o) -> auto& { return o.output.sizes; }));
   add(text_row("output.msh_version", "--msh-version", "V", "version of MSH files; by default 4.1",
                [](auto& o) -> auto& { return o.output.msh_version; }, {"2.2", "4.1"}));

@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numbers>
 
 #include "delfront/io.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/levels.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/quantities.hpp"
 #include "planar/far_field.hpp"
+#include "sizing/asked_sizes.hpp"
 
 namespace delfront {
 
@@ -82,7 +86,10 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
   const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
   CurveId far_field;
   if (has_far_field && !looks_only) {
-    far_field = add_far_field(domain, options.domain.enclose, options.size, scale, context);
+    const Options coarse = coarse_options(options);
+    SizeOptions sizes = coarse.size;
+    if (options.refine.levels > 0) sizes.growth = growth_of_boundary(sizes);
+    far_field = add_far_field(domain, coarse.domain.enclose, sizes, scale, context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }
   far_field = apply_boundaries(boundaries, domain, far_field);
@@ -130,13 +137,34 @@ void check_planar_outputs(const Options& options) {
   }
 }
 
+Model true_lines(Options options, std::vector<NamedMesh> inputs, const LengthScale& scale, Context& context) {
+  constexpr double kFiner = 8, kPiecesOfCircle = 4000;
+  const bool has_circle = options.domain.enclose.shape == "circle" || options.domain.enclose.shape == "sphere";
+  if (options.planar.curves.empty() && !has_circle) return {};
+  options.refine = {};
+  for (PlanarCurveOptions& curve : options.planar.curves) {
+    double chords = 0;
+    for (std::size_t i = 1; i < curve.at.size(); ++i) chords += distance(curve.at[i - 1], curve.at[i]);
+    if (!curve.h) curve.h = Length{chords / static_cast<double>(curve.at.size()), ""};
+    curve.h->value /= kFiner;
+  }
+  if (has_circle)
+    options.domain.enclose.h = Length{2 * std::numbers::pi / kPiecesOfCircle * options.domain.enclose.size.value, ""};
+  inputs.resize(options.input.files.size());
+  std::vector<NamedMesh> curves = curves_of_job(options, inputs);
+  std::move(curves.begin(), curves.end(), std::back_inserter(inputs));
+  PlanarDomain domain = build_planar_domain(inputs, context);
+  set_curves(domain, options, scale, context);
+  return model_of_lines(line_mesh(domain), "lines");
+}
+
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options,
-                              const std::shared_ptr<const SizeField>& sizes, Context& context) {
-  if (!far_field.is_valid()) return generate_planar(domain, options, context, sizes);
+                              const std::shared_ptr<const SizeField>& sizes, const Model* geometry, Context& context) {
+  if (!far_field.is_valid()) return generate_planar_in_levels(domain, options, context, sizes, geometry);
   PlanarDomain known = domain;
   const PlanarCurve asked = known.curves[far_field];
   known.curves[far_field].kind = "farfield";
-  Outcome outcome = generate_planar(known, options, context, sizes);
+  Outcome outcome = generate_planar_in_levels(known, options, context, sizes, geometry);
   const GroupId group = outcome.mesh.find_group(1, asked.name);
   if (group.is_valid()) outcome.mesh.groups[group].kind = asked.kind;
   return outcome;

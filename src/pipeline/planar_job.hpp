@@ -23,7 +23,11 @@ std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<N
 
 /// @brief generate_planar, knowing the far field by its kind whatever kind the job gives it in the grid.
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options,
-                              const std::shared_ptr<const SizeField>& sizes, Context& context);
+                              const std::shared_ptr<const SizeField>& sizes, const Model* geometry, Context& context);
+
+/// @brief The job's lines with its splines and a round far field in many more pieces than any grid has: where new
+/// points of refine.levels belong. Empty where all lines are straight between given points.
+Model true_lines(Options options, std::vector<NamedMesh> inputs, const LengthScale& scale, Context& context);
 
 /// @brief The domain's lines as a mesh, to look at or to write.
 Mesh line_mesh(const PlanarDomain& domain);

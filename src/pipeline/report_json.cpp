@@ -147,6 +147,21 @@ Json to_json(const ImproveReport& r) {
           {"below_goal_forced", r.below_goal_forced}};
 }
 
+/// Null without levels.
+Json to_json(const LevelsReport& r) {
+  if (r.refined.levels == 0) return nullptr;
+  return {{"levels", r.refined.levels},
+          {"coarse_cells", r.coarse_cells},
+          {"coarse_points", r.coarse_points},
+          {"points_on_surface", r.refined.points_on_surface},
+          {"points_on_features", r.refined.points_on_features},
+          {"largest_move", number(r.refined.largest_move)},
+          {"halved", r.refined.halved},
+          {"reversed", r.refined.reversed},
+          {"reversed_places", to_json(r.refined.reversed_places, kMaxPlaces)},
+          {"groups_not_in_geometry", r.refined.groups_not_in_model}};
+}
+
 Json to_json(const SurfaceGridReport& r) {
   Json patches = Json::array(), fallbacks = Json::array();
   for (const SurfacePatchReport& p : r.patches)
@@ -331,6 +346,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"refine", to_json(result.report.refine)},
       {"front", to_json(result.report.front)},
       {"improve", to_json(result.report.improve)},
+      {"levels", to_json(result.report.levels)},
       {"quality", to_json(result.report.quality)},
       {"boundaries", groups_json(result.mesh, 2)},
       {"regions", groups_json(result.mesh, 3)},

@@ -19,6 +19,7 @@ struct Run {
   std::vector<Finding> gate_failures;  ///< of a grid that does not meet output.require
   Mesh partial;                        ///< what there is of the grid where gridding failed
   JobKind kind = JobKind::grid;
+  Model geometry;  ///< where new boundary points of refine.levels belong; empty: in the middle of their edges
 };
 
 inline bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }

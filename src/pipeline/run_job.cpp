@@ -17,6 +17,7 @@
 #include "pipeline/job_checks.hpp"
 #include "pipeline/job_leavings.hpp"
 #include "pipeline/job_sizes.hpp"
+#include "pipeline/levels.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/planar_job.hpp"
 #include "pipeline/quantities.hpp"
@@ -74,10 +75,23 @@ void read_inputs(Run& run) {
     say_what_is_unused(run.inputs.back().mesh, files[i], run.context);
     run.result.inputs.push_back(std::move(file));
   }
-  std::vector<NamedMesh> curves = curves_of_job(run.options, run.inputs);
+  std::vector<NamedMesh> curves = curves_of_job(coarse_options(run.options), run.inputs);
   std::move(curves.begin(), curves.end(), std::back_inserter(run.inputs));
   run.context.progress("read", files.size(), files.size(), "files");
 }
+
+void read_geometry(Run& run) {
+  const std::string& file = run.options.refine.geometry;
+  if (file.empty()) return;
+  const StageTimer timer(run.context, "read");
+  with_place(run.options, "refine.geometry", [&] {
+    Mesh mesh = read_mesh(file, run.context);
+    run.geometry = is_planar_job(run.inputs) ? model_of_lines(mesh, stem_of(file))
+                                             : build_model({{std::move(mesh), stem_of(file)}}, run.context);
+  });
+}
+
+const Model* geometry_of(const Run& run) { return run.geometry.points.empty() ? nullptr : &run.geometry; }
 
 /// What percent, longest sides and units mean is known once the input's box is.
 void set_scale(Run& run, const Box& box) {
@@ -89,13 +103,21 @@ void set_scale(Run& run, const Box& box) {
     enclose.h = Length{std::min(default_far_field_side(enclose), options.size.hmax->value), ""};
 }
 
+/// The far field of the coarse grid, where there are levels.
+EncloseOptions coarse_far_field(const Options& options) {
+  EncloseOptions enclose = coarse_options(options).domain.enclose;
+  if (options.refine.levels > 0 && !enclose.h)
+    enclose.h = Length{std::min(coarsening(options), 2.0) * default_far_field_side(enclose), ""};
+  return enclose;
+}
+
 /// The far field and the patches' names and kinds. What the input holds is a wall in the flow unless said otherwise.
 void set_boundaries(Run& run, Model& model) {
   Options& options = run.options;
   const bool looks_only = has_far_field(options) && options.stop_after == "geometry";
   const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
   if (has_far_field(options) && !looks_only) {
-    run.far_field = add_far_field(model, options.domain.enclose, run.result.scale, run.context);
+    run.far_field = add_far_field(model, coarse_far_field(options), run.result.scale, run.context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }
   run.far_field = apply_boundaries(boundaries, model, run.far_field);
@@ -160,10 +182,12 @@ void stop_at_surface(Run& run, Model model) {
 /// generate() knows the outer boundary by its kind, "farfield"; a kind that the job gives it goes to the grid alone.
 Outcome generate_in_far_field(const Run& run, Model model) {
   std::shared_ptr<const SizeField> sizes = build_job_size_field(run.options, model, model.bounding_box(), run.context);
-  if (!run.far_field.is_valid()) return generate(std::move(model), run.options, run.context, std::move(sizes));
+  const Model* geometry = geometry_of(run);
+  if (!run.far_field.is_valid())
+    return generate(std::move(model), run.options, run.context, std::move(sizes), geometry);
   const Patch asked = model.patches[run.far_field];
   model.patches[run.far_field].kind = "farfield";
-  Outcome outcome = generate(std::move(model), run.options, run.context, std::move(sizes));
+  Outcome outcome = generate(std::move(model), run.options, run.context, std::move(sizes), geometry);
   const GroupId group = outcome.mesh.find_group(2, asked.name);
   if (group.is_valid()) outcome.mesh.groups[group].kind = asked.kind;
   return outcome;
@@ -206,11 +230,14 @@ void check_size_outputs(const Options& options) {
 }
 
 /// Estimate and sizes: what the boundary and the size field say, without a grid.
-void survey(Run& run, const KeptDomain& domain, const SizeField& size) {
+/// @param size  of the coarse grid, where there are levels
+void survey(Run& run, const KeptDomain& domain, const std::shared_ptr<const SizeField>& size) {
   if (run.kind == JobKind::estimate) {
-    run.result.estimate = estimate_grid(domain, size, growth_of(run.options.size), run.context);
+    run.result.estimate = estimate_grid(domain, *size, growth_of(coarse_options(run.options).size), run.context);
+    refine_estimate(*run.result.estimate, domain.is_planar(), run.options.refine.levels);
   } else {
-    run.result.mesh = size_mesh(domain, size, growth_of(run.options.size), run.context);
+    const std::shared_ptr<const SizeField> fine = scale_sizes(size, 1 / coarsening(run.options));
+    run.result.mesh = size_mesh(domain, *fine, growth_of(run.options.size), run.context);
     write_outputs(run);
   }
 }
@@ -218,14 +245,18 @@ void survey(Run& run, const KeptDomain& domain, const SizeField& size) {
 void survey_volume(Run& run, Model model) {
   if (run.far_field.is_valid()) model.patches[run.far_field].kind = "farfield";
   std::shared_ptr<const SizeField> asked = build_job_size_field(run.options, model, model.bounding_box(), run.context);
-  const Prepared prepared = prepare_volume(model, run.options, std::move(asked), run.result.report, run.context);
-  survey(run, KeptDomain(prepared), *prepared.size);
+  asked = coarse_sizes(std::move(asked), run.options, model.bounding_box(), run.context);
+  const Options options = coarse_options(run.options);
+  const Prepared prepared = prepare_volume(model, options, std::move(asked), run.result.report, run.context);
+  survey(run, KeptDomain(prepared), prepared.size);
 }
 
 void survey_plane(Run& run, PlanarDomain domain, CurveId far_field, const std::shared_ptr<const SizeField>& asked) {
   if (far_field.is_valid()) domain.curves[far_field].kind = "farfield";
-  const PlanarPrepared prepared = prepare_planar(domain, run.options, asked, run.context);
-  survey(run, KeptDomain(prepared), *prepared.size);
+  const std::shared_ptr<const SizeField> coarse =
+      coarse_sizes(asked, run.options, model_of(domain).bounding_box(), run.context);
+  const PlanarPrepared prepared = prepare_planar(domain, coarse_options(run.options), coarse, run.context);
+  survey(run, KeptDomain(prepared), prepared.size);
 }
 
 /// Lines in the plane: the same steps, over curves instead of patches.
@@ -253,7 +284,9 @@ void work_in_the_plane(Run& run) {
   const std::shared_ptr<const SizeField> sizes =
       build_job_size_field(run.options, names, names.bounding_box(), run.context, is_kept);
   if (run.kind != JobKind::grid) return survey_plane(run, std::move(domain), far_field, sizes);
-  Outcome outcome = generate_in_far_field(domain, far_field, run.options, sizes, run.context);
+  if (run.options.refine.levels > 0 && run.geometry.points.empty())
+    run.geometry = true_lines(run.options, run.inputs, run.result.scale, run.context);
+  Outcome outcome = generate_in_far_field(domain, far_field, run.options, sizes, geometry_of(run), run.context);
   finish(run, std::move(outcome));
 }
 
@@ -262,6 +295,7 @@ void work(Run& run) {
   if (run.kind == JobKind::sizes) check_size_outputs(run.options);
   check_job(run.options);
   read_inputs(run);
+  read_geometry(run);
   if (is_planar_job(run.inputs)) return work_in_the_plane(run);
   Model model = make_model(run);
   if (run.options.stop_after == "geometry") return stop_at_surface(run, std::move(model));
@@ -342,7 +376,7 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
     result.stage = progress.stage;
     if (outer_progress) outer_progress(progress);
   };
-  Run run{options, context, result, {}, {}, {}, {}, kind};
+  Run run{options, context, result, {}, {}, {}, {}, kind, {}};
   if (kind != JobKind::grid) prepare_survey(run);
   work_and_catch(run);
   context.on_log = outer_log;

@@ -31,6 +31,7 @@ constexpr double kFinestBorder = 1.0 / 128;  ///< of the longest side: no box on
 
 // Of this program on one core of about 2.5 GHz; bench/compare_peers.py measures them (docs/performance.md).
 constexpr double kSecondsPerTet = 0.5e-6, kSecondsPerTetAndThread = 0.8e-6, kSecondsPerTriangle = 0.5e-6;
+constexpr double kSecondsPerRefined = 0.15e-6;  ///< a cell that comes of halved edges (docs/refine.md)
 constexpr double kBytesAtStart = 40e6, kBytesPerTet = 66, kBytesPerTriangle = 90;
 
 /// Places of two-point Gauss rules: their mean is exact for cubics.
@@ -150,23 +151,36 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double g
 
 double growth_of(const SizeOptions& options) {
   const double growth = options.growth.value_or(kDefaultGrowth);
-  return options.solution.file.empty() ? growth : std::max(growth, options.solution.hgrad);
+  return steeper_growth(options.solution.file.empty() ? growth : std::max(growth, options.solution.hgrad),
+                        options.steeper);
 }
 
-void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, Context& context) {
-  const std::uint64_t limit = context.max_cells > 0 ? context.max_cells : TetComplex::kMaxSlots;
+void refine_estimate(Estimate& estimate, bool is_planar, int levels) {
+  if (levels == 0) return;
+  const double finer = std::ldexp(1, levels), times = std::pow(finer, is_planar ? 2 : 3);
+  estimate.cells *= times;
+  estimate.points = estimate.cells / (is_planar ? kTrianglesPerPoint : kCellsPerPoint);
+  estimate.least_size /= finer;
+  estimate.greatest_size /= finer;
+  estimate.memory = kBytesAtStart + estimate.cells * (is_planar ? kBytesPerTriangle : kBytesPerTet);
+  estimate.seconds += estimate.cells * kSecondsPerRefined;
+}
+
+void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, int levels, Context& context) {
+  const std::uint64_t children = std::uint64_t{1} << (3 * levels);
+  const std::uint64_t limit = context.max_cells > 0 ? context.max_cells / children : TetComplex::kMaxSlots;
   Box box;
   const TetComplex& c = prepared.grid.complex;
   for (VertexIndex v = 0; v < c.num_vertices(); ++v)
     if (c.vertex_tet[v] != kNoIndex) box.add(c.point(v));
   if (most_cells(box, prepared.size->lower_bound(box), false) < static_cast<double>(limit)) return;
-  const Estimate estimate =
-      estimate_grid(KeptDomain(prepared), *prepared.size, growth_of(options), context, kFewLeaves);
+  Estimate estimate = estimate_grid(KeptDomain(prepared), *prepared.size, growth_of(options), context, kFewLeaves);
   if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
+  refine_estimate(estimate, false, levels);
   throw LimitError(fmt::format(
       "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, over the limit of {}{}; ask for "
       "larger sizes (--hmax, --growth, or a larger --hmin that bounds all), or see `delfront estimate`",
-      estimate.least_size, estimate.cells, limit,
+      estimate.least_size, estimate.cells, context.max_cells > 0 ? context.max_cells : limit * children,
       context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
 

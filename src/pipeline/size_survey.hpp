@@ -17,9 +17,13 @@ namespace delfront {
 Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double growth, Context& context,
                        std::size_t max_leaves = 500'000);
 
+/// @brief What an estimate becomes where every edge of the grid is then halved so many times.
+void refine_estimate(Estimate& estimate, bool is_planar, int levels);
+
 /// @brief Before the work: sizes that ask for many times the cells that may be or can be held.
+/// @param prepared, options  of the coarse grid where there are levels
 /// @throws LimitError
-void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, Context& context);
+void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, int levels, Context& context);
 
 /// @return the growth that the size field of a job keeps
 double growth_of(const SizeOptions& options);

@@ -48,12 +48,12 @@ double largest_size(const Model& model, const SizeOptions& size, const SizeField
                     const std::vector<bool>& is_kept) {
   if (size.hmax) return size.hmax->value;
   if (asked && has_field_everywhere(size)) return std::numeric_limits<double>::infinity();
-  if (!asked) return mean_side(model, is_kept);
+  if (!asked) return size.steeper * mean_side(model, is_kept);  // of a coarse grid, where there are levels
   Box box;
   for (std::size_t t = 0; t < model.triangles.size(); ++t)
     if (!is_kept[model.patch_of_triangle[TriangleId(t)].index()])
       for (const VertexId v : model.triangles[TriangleId(t)]) box.add(model.points[v]);
-  return kLargestShare * box.diagonal();
+  return size.steeper * kLargestShare * box.diagonal();
 }
 
 void warn_of_fallbacks(const SurfaceGridReport& report, Context& context) {

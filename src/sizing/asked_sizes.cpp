@@ -13,13 +13,24 @@ double largest_size(const BoundarySizes& boundary) {
   return largest;
 }
 
+double steeper_growth(double growth, double times) {
+  constexpr double kSteepest = 0.5;  ///< beyond, sizes differ by half and more from one cell to the next
+  if (times == 1) return growth;
+  const double slope = (growth - 1) / growth;
+  return 1 / (1 - std::min(times * slope, std::max(slope, kSteepest)));
+}
+
+double growth_of_boundary(const SizeOptions& options) {
+  return steeper_growth(options.growth.value_or(kDefaultGrowth), options.steeper);
+}
+
 bool has_field_everywhere(const SizeOptions& options) {
   return !options.expression.delta.empty() || !options.background.file.empty() || !options.solution.file.empty();
 }
 
 std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,
                                                   Context& context) {
-  boundary.growth = options.growth.value_or(kDefaultGrowth);
+  boundary.growth = growth_of_boundary(options);
   if (options.hmin) boundary.hmin = options.hmin->value;
   if (options.hmax)
     boundary.hmax = options.hmax->value;
@@ -57,6 +68,13 @@ void add_size_field(Mesh& mesh, const SizeField& size, const Context& context) {
   Field h{"h", Field::On::vertices, CellType::vertex, 1, std::vector<double>(mesh.points.size())};
   evaluate_sizes(size, mesh.points, h.values, context);
   mesh.fields.push_back(std::move(h));
+  if (size.is_isotropic()) return;
+  std::vector<Metric> metrics(mesh.points.size());
+  size.metrics(mesh.points, metrics);
+  Field metric{"metric", Field::On::vertices, CellType::vertex, 6, {}};
+  metric.values.reserve(6 * metrics.size());
+  for (const Metric& m : metrics) metric.values.insert(metric.values.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});
+  mesh.fields.push_back(std::move(metric));
 }
 
 std::shared_ptr<const SizeField> combine_with_asked(std::shared_ptr<const SizeField> of_boundary,

@@ -14,6 +14,12 @@ namespace delfront {
 /// @brief Where no growth is asked for.
 inline constexpr double kDefaultGrowth = 1.2;
 
+/// @return the growth that the boundary's sizes keep, with options.steeper: then of a slope of at most 1/2
+double growth_of_boundary(const SizeOptions& options);
+
+/// @brief The growth whose slope (c - 1) / c is so many times that of the given one: at most 1/2, or the given one's.
+double steeper_growth(double growth, double times);
+
 /// @return the largest size of any boundary point, 0 without points
 double largest_size(const BoundarySizes& boundary);
 
@@ -41,7 +47,7 @@ struct LongEdges {
 LongEdges find_long_edges(std::span<const std::array<Point, 2>> edges, const SizeOptions& options,
                           const SizeField* asked, const Context& context);
 
-/// @brief The wanted sizes at the points of a grid, as its field "h".
+/// @brief The wanted sizes at the points of a grid, as its field "h"; of stretched ones also the tensors "metric".
 void add_size_field(Mesh& mesh, const SizeField& size, const Context& context);
 
 /// @brief The lesser of both, clamped to the options' hmin and hmax.

@@ -138,6 +138,88 @@ class PlanarJob(case.Case):
         self.expect(2, "mesh", "square.poly", "-o", "c.vtu", "--set", "planar.method=ruppert", says="front-delaunay")
 
 
+class Levels(case.Case):
+    """Coarse sizes at first, then every edge halved."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("foil.dat", naca0012())
+        self.write("square.poly", SQUARE)
+
+    def points_of(self, name, tag):
+        """Of a medit file: the points of lines of one number."""
+        text = (self.folder / name).read_text()
+        numbers = text.split("Vertices")[1].split()
+        points = [(float(numbers[1 + 3 * i]), float(numbers[2 + 3 * i])) for i in range(int(numbers[0]))]
+        lines = text.split("Edges")[1].split()
+        ends = [tuple(map(int, lines[1 + 3 * i : 4 + 3 * i])) for i in range(int(lines[0]))]
+        return [points[v - 1] for a, b, ref in ends if ref == tag for v in (a, b)]
+
+    def test_every_method_and_every_level_meets_the_sizes(self):
+        for method, levels in itertools.product(("front", "front-delaunay", "delaunay"), (0, 1, 2)):
+            with self.subTest(method, levels=levels):
+                job = ["square.poly", "--boundary", "split", "--hmax", "0.02", "--levels", levels,
+                       "--set", f"planar.method={method}"]
+                self.expect(0, "mesh", *job, "-o", "c.vtu", "--report", "r.json", "--require", "min_angle > 28")
+                report = self.report("r.json")
+                self.assertAlmostEqual(report["quality"]["volume"], 1, 12)
+                cells = report["quality"]["num_cells"]
+                self.assertAlmostEqual(cells / (2.31 / 0.02**2), 1, delta=0.3)
+                self.assertLess(report["quality"]["measures"]["edge_length"]["max"], 0.04)
+                self.expect(0, "estimate", *job, "--report", "e.json")
+                self.assertAlmostEqual(self.report("e.json")["estimate"]["cells"] / cells, 1, delta=0.25)
+                if levels == 0:
+                    self.assertIsNone(report["levels"])
+                else:
+                    self.assertEqual(report["levels"]["levels"], levels)
+                    self.assertEqual(cells, 4**levels * report["levels"]["coarse_cells"])
+
+    def test_a_round_far_field_stays_round(self):
+        self.expect(0, "mesh", "foil.dat", "-o", "c.mesh", "--farfield", "circle:20c", "--levels", "2", "--report", "r.json")
+        rings = [self.points_of("c.mesh", tag) for tag in (1, 2)]
+        far = max(rings, key=lambda points: max(x * x for x, _ in points))
+        self.assertGreaterEqual(len(far), 2 * 64)
+        for x, y in far:
+            self.assertAlmostEqual(math.hypot(x - 0.5, y) / 20, 1, 5)
+        self.assertEqual(self.report("r.json")["levels"]["reversed"], 0)
+
+    def test_a_spline_stays_one(self):
+        circle = [[math.cos(a * math.pi / 8), math.sin(a * math.pi / 8)] for a in range(16)]
+        self.write("job.toml", f"[[planar.curve]]\nname = 'disc'\nat = {circle}\nclosed = true\nh = 0.1\n"
+                   "[refine]\nlevels = 2\n[output]\nfiles = ['c.mesh']\n")
+        self.expect(0, "mesh", "job.toml", "--report", "r.json")
+        points = self.points_of("c.mesh", 1)
+        for x, y in points:
+            self.assertAlmostEqual(math.hypot(x, y), 1, 3)
+        self.assertGreater(self.report("r.json")["levels"]["points_on_features"]
+                           + self.report("r.json")["levels"]["points_on_surface"], 20)
+        self.assertAlmostEqual(self.report("r.json")["quality"]["volume"], math.pi, 2)
+
+    def test_lines_of_a_file_as_the_geometry(self):
+        self.write("fine.dat", naca0012(600))
+        self.expect(0, "mesh", "foil.dat", "-o", "c.su2", "--farfield", "circle:20c", "--levels", "1", "--geometry", "fine.dat",
+                    "--report", "r.json")
+        self.assertIn("fine.dat", " ".join(self.report("r.json")["warnings"]))  # it has no far field, nor a foil
+
+    def test_the_wanted_size_is_the_final_one(self):
+        self.expect(0, "mesh", "square.poly", "--boundary", "split", "--hmax", "0.1", "--levels", "1", "-o", "c.vtu", "--ascii",
+                    "--set", "output.sizes=true")
+        text = (self.folder / "c.vtu").read_text()
+        values = [float(word) for word in text.split('Name="h"')[1].split(">", 1)[1].split("<")[0].split()]
+        self.assertLessEqual(max(values), 0.1 + 1e-12)
+        self.assertGreater(max(values), 0.09)
+
+    def test_what_cannot_be_is_refused_before_the_work(self):
+        self.expect(2, "mesh", "square.poly", "-o", "c.vtu", "--levels", "9", says=["--levels: ", "8 or fewer"])
+        self.expect(2, "mesh", "square.poly", "-o", "c.vtu", "--levels", "-1", says="refine.levels")
+        self.expect(2, "mesh", "square.poly", "-o", "c.vtu", "--geometry", "foil.dat", says="refine.levels")
+        self.expect(2, "mesh", "square.poly", "-o", "foil.dat.vtu", "--levels", "1", "--geometry", "foil.dat.vtu",
+                    says="another name")
+        self.expect(6, "mesh", "square.poly", "--boundary", "split", "--hmax", "0.02", "--levels", "1", "-o", "c.vtu",
+                    "--max-cells", "1000", says=["limit of 250 cells", "each of which becomes 4"])
+        self.assertNotIn("c.vtu", self.files())
+
+
 class IndependentCheck(case.Case):
     def test_sections(self):
         if not CHECKER.exists() or subprocess.run(["/usr/bin/python3", "-c", "import meshio, scipy"],

@@ -313,6 +313,8 @@ Options unusual_options() {
       {"volume.method", "none"},
       {"volume.core", "false"},
       {"improve.enabled", "false"},
+      {"refine.levels", "2"},
+      {"refine.geometry", "/fine.stl"},
       {"improve.max_passes", "3"},
       {"improve.goals.min_dihedral", "9.5"},
       {"improve.goals.max_nonortho", "71"},
