@@ -248,7 +248,7 @@ void expect_curves(const Model& model, const BoundaryGrid& grid, const RecoveryR
 
 }  // namespace
 
-constexpr std::size_t kMostForFront = 3000;  ///< triangles of a model
+constexpr std::size_t kMostForFront = 600;  ///< triangles of a model
 
 Recovered expect_recovered(const Model& model, double volume, const DomainOptions& domain) {
   expect_valid_surface(model);
