@@ -142,9 +142,9 @@ std::uint32_t SurfaceFront::next_side() {
 }
 
 void SurfaceFront::add_to_tree(std::uint32_t s) {
-  const Point a = points_[sides_[s].node[0]].at, b = points_[sides_[s].node[1]].at;
-  const Point middle = 0.5 * (a + b), d = b - a;
-  tree_.insert(s, {middle.x, middle.y, middle.z}, {0.5 * std::abs(d.x), 0.5 * std::abs(d.y), 0.5 * std::abs(d.z)});
+  Box box;
+  for (const std::uint32_t node : sides_[s].node) box.add(points_[node].at);
+  tree_.insert(s, box);
   ++num_in_tree_;
 }
 
@@ -155,7 +155,7 @@ void SurfaceFront::rebuild_tree() {
     if (side.is_alive)
       for (const std::uint32_t node : side.node) box.add(points_[node].at);
   if (box.is_empty()) box.add(Point{});
-  tree_.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
+  tree_.clear(box);
   num_in_tree_ = 0;
   for (std::uint32_t s = 0; s < sides_.size(); ++s)
     if (sides_[s].is_alive) add_to_tree(s);

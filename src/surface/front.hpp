@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delfront/size_field.hpp"
-#include "front/point_tree.hpp"
+#include "spatial/box_octree.hpp"
 #include "surface/support.hpp"
 
 namespace delfront {
@@ -119,7 +119,7 @@ class SurfaceFront {
   std::vector<std::vector<std::uint32_t>> bins_;
   std::vector<std::size_t> bin_begin_;
   std::size_t lowest_bin_ = 0;
-  PointTree<3> tree_;
+  BoxOctree tree_;
   // of the step under way
   const SurfaceFrontSettings* set_ = nullptr;
   Plane plane_;

@@ -98,7 +98,7 @@ void SurfaceFront::look_round(std::uint32_t s, double radius) {
   box.add(ideal_ - Point{radius, radius, radius});
   box.add(ideal_ + Point{radius, radius, radius});
   const double largest_height = 0.8 * radius + half_;
-  tree_.for_each_near({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}, [&](std::uint32_t t) {
+  tree_.for_each_overlap(box, [&](std::uint32_t t) {
     const FrontSide& side = sides_[t];
     if (!side.is_alive || t == s || dot(side.normal, plane_.n) < 0.2) return;
     const Point p = points_[side.node[0]].at, q = points_[side.node[1]].at;

@@ -137,7 +137,6 @@ class Front {
   /// F6: those that would make the smallest elements, along a curve.
   bool choose_faces() {
     keep_live(waiting_);
-    keep_live(live_);
     float smallest = 1e30f;
     for (const std::uint32_t f : waiting_) smallest = std::min(smallest, front_.face(f).size);
     active_.clear();
@@ -192,7 +191,8 @@ class Front {
   }
 
   void run_phase(int phase) {
-    std::erase_if(active_, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
+    keep_live(active_);
+    keep_live(live_);  // before the slots of what is gone are handed out again
     const int axis = static_cast<int>((report_.rounds + static_cast<unsigned>(phase)) % 3);
     const std::vector<FrontSlab> slabs = cut_slabs(axis, phase == kPhases - 1);
     std::vector<std::vector<std::uint32_t>> faces(slabs.size()), left(slabs.size()), failed(slabs.size());
@@ -234,7 +234,8 @@ class Front {
     }
   }
 
-  /// The points that may be met round these faces.
+  /// The faces that may be met round these. Other workers change theirs meanwhile: nothing of a face is looked at but
+  /// where it lies before it is known not to be one of those.
   void plant_tree(FrontWorker& worker, const FrontSlab& slab, const std::vector<std::uint32_t>& faces) const {
     Box box;
     double margin = 0;
@@ -247,15 +248,15 @@ class Front {
     box.high = box.high + around;
     box.low[slab.axis] = std::max(box.low[slab.axis], slab.low);
     box.high[slab.axis] = std::min(box.high[slab.axis], slab.high);
-    worker.tree.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
+    worker.tree.clear(box);
     const bool are_few = kFew * faces.size() < live_.size();
     CellMarks marks(are_few ? faces.size() : 0, margin);
     if (are_few)
       for (const std::uint32_t f : faces) marks.add(front_.box(f));
     for (const std::uint32_t f : live_) {
-      if (!front_.face(f).is_alive) continue;
       const Box of_face = front_.box(f);
-      if (box.overlaps(of_face) && (!are_few || marks.are_near(of_face))) worker.add_to_tree(f);
+      if (!slab.meets(of_face) || !box.overlaps(of_face) || (are_few && !marks.are_near(of_face))) continue;
+      if (front_.face(f).is_alive) worker.add_to_tree(f);
     }
   }
 

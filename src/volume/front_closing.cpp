@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "volume/front_closing.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,7 +8,7 @@
 #include <unordered_map>
 
 #include "delfront/errors.hpp"
-#include "front/point_tree.hpp"
+#include "spatial/box_octree.hpp"
 #include "tetra/quality.hpp"
 #include "volume/recover.hpp"
 
@@ -24,9 +22,28 @@ constexpr std::size_t kMostEmptied = 4;  ///< tets a round, so that the point ca
 constexpr std::size_t kMostFaces = 600;  ///< of a cavity that is filled round one point
 constexpr int kHalvings = 8;
 
+void sort_out_repeats(std::vector<std::uint32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+void insert_corners(BoxOctree& tree, const FrontStore& front, std::uint32_t f) {
+  for (const VertexIndex v : front.nodes(f)) tree.insert(v, {front.complex().point(v), front.complex().point(v)});
+}
+
+/// By corners, so that what lies in a cavity is found.
+BoxOctree plant_tree(const FrontStore& front, const std::vector<std::uint32_t>& faces) {
+  Box box;
+  for (const std::uint32_t f : faces) box.add(front.box(f));
+  BoxOctree tree;
+  tree.clear(box);
+  for (const std::uint32_t f : faces) insert_corners(tree, front, f);
+  return tree;
+}
+
 class CavityFiller {
  public:
-  CavityFiller(FrontStore& front, PointTree<3>& tree, FrontReport& report)
+  CavityFiller(FrontStore& front, BoxOctree& tree, FrontReport& report)
       : front_(front), c_(front.complex()), tree_(tree), report_(report) {}
 
   bool is_given_up(std::uint32_t f) const { return given_up_.count(key(f)) > 0; }
@@ -164,11 +181,7 @@ class CavityFiller {
       if (++emptied == kMostEmptied) break;
     }
     std::erase_if(made_, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
-    for (const std::uint32_t f : made_)
-      for (const VertexIndex v : front_.nodes(f)) {
-        const Point at = c_.point(v);
-        tree_.insert(v, {at.x, at.y, at.z}, 0);
-      }
+    for (const std::uint32_t f : made_) insert_corners(tree_, front_, f);
     faces_to_see.insert(faces_to_see.end(), made_.begin(), made_.end());
     report_.cells_emptied += emptied;
     return emptied;
@@ -184,11 +197,9 @@ class CavityFiller {
   /// Whether no other part of the front lies in the cavity.
   bool is_clear(const Point& p) {
     Box box;
-    ++stamp_;
-    for (const std::uint32_t f : faces_)
-      for (const VertexIndex v : front_.nodes(f)) box.add(c_.point(v));
+    for (const std::uint32_t f : faces_) box.add(front_.box(f));
     bool clear = true;
-    tree_.for_each_near({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}, [&](VertexIndex v) {
+    tree_.for_each_overlap(box, [&](VertexIndex v) {
       if (clear && front_.first_at(v) != kNoIndex && is_inside(v, p)) clear = false;
     });
     return clear;
@@ -240,7 +251,7 @@ class CavityFiller {
 
   FrontStore& front_;
   TetComplex& c_;
-  PointTree<3>& tree_;
+  BoxOctree& tree_;
   FrontReport& report_;
   std::uint64_t stamp_ = std::uint64_t{1} << 63;
   std::vector<std::uint32_t> faces_, made_, order_;
@@ -254,26 +265,11 @@ class CavityFiller {
   std::vector<double> quality_;
 };
 
-PointTree<3> plant_tree(FrontStore& front, const std::vector<std::uint32_t>& faces) {
-  const TetComplex& c = front.complex();
-  Box box;
-  for (const std::uint32_t f : faces)
-    for (const VertexIndex v : front.nodes(f)) box.add(c.point(v));
-  PointTree<3> tree;
-  tree.clear({box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z});
-  for (const std::uint32_t f : faces)
-    for (const VertexIndex v : front.nodes(f)) {
-      const Point p = c.point(v);
-      tree.insert(v, {p.x, p.y, p.z}, 0);
-    }
-  return tree;
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<std::uint32_t>& faces,
                                          FrontReport& report, Context& context) {
-  PointTree<3> tree = plant_tree(front, faces);
+  BoxOctree tree = plant_tree(front, faces);
   CavityFiller filler(front, tree, report);
   filler.faces_to_see = faces;
   for (std::size_t i = 0; i < filler.faces_to_see.size(); ++i) {  // it grows
@@ -285,8 +281,7 @@ std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<st
   }
   std::vector<std::uint32_t> left = std::move(filler.faces_to_see);
   std::erase_if(left, [&](std::uint32_t f) { return !front.face(f).is_alive; });
-  std::sort(left.begin(), left.end());
-  left.erase(std::unique(left.begin(), left.end()), left.end());
+  sort_out_repeats(left);
   return left;
 }
 
@@ -296,13 +291,11 @@ std::vector<std::uint32_t> empty_around(FrontStore& front, const std::vector<std
   for (const std::uint32_t f : faces)
     for (const VertexIndex v : front.nodes(f))
       for (std::uint32_t e = front.first_at(v); e != kNoIndex; e = front.next_at(e)) near.push_back(e >> 2);
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sort_out_repeats(near);
   std::vector<TetIndex> behind;
   for (const std::uint32_t f : near)
     if (!front.face(f).is_boundary) behind.push_back(front.face(f).behind >> 2);
-  std::sort(behind.begin(), behind.end());
-  behind.erase(std::unique(behind.begin(), behind.end()), behind.end());
+  sort_out_repeats(behind);
   for (const TetIndex t : behind) front.remove_tet(t, made);
   report.cells_emptied += behind.size();
   std::vector<std::uint32_t> all;
@@ -344,10 +337,6 @@ CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces)
   }
   return cavity;
 }
-
-}  // namespace
-
-namespace {
 
 void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report, Context& context) {
   CavityModel cavity = model_of(front, faces);

@@ -31,7 +31,6 @@ void Neighbourhood::start(std::uint32_t f) {
   origin_ = (1.0 / 3) * (a + b + c);
   normal_ = cross(b - a, c - a);
   const double l = length(normal_);
-  scale_ = std::sqrt(l);
   base_ = {normal_, dot(normal_, a - origin_), 0, l};
   if (l > 0) normal_ = normal_ / l;
   for (const VertexIndex v : n) local(v);

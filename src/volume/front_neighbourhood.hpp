@@ -56,7 +56,8 @@ class Neighbourhood {
   enum class Verdict : std::uint8_t { free, crosses, too_close };
   /// @brief Whether the tet of the face and point `apex` meets the front in common corners, edges and faces alone
   /// (exact), with no other point nearer than about `clearance` (not exact: a preference).
-  /// @param narrowest  least cosine of an angle between a new face and one that is there ...
+  /// @param widest_cosine  no angle between a new face and one that is there has a larger cosine (near-miss rule, a
+  /// preference too); 1: any angle will do
   Verdict test(std::size_t apex, double clearance, double widest_cosine);
 
   /// @brief How far a place is from the nearest point and, over faces, from these; both in no way exact.
@@ -104,7 +105,6 @@ class Neighbourhood {
   const TetComplex& c_;
   Point origin_, normal_;
   Plane base_;
-  double scale_ = 0;
   std::uint64_t step_ = 0;
   std::vector<Slot> table_;
   std::vector<VertexIndex> id_;

@@ -32,17 +32,13 @@ double seconds_now() {
 FrontCounts& FrontCounts::operator+=(const FrontCounts& o) {
   steps += o.steps, tets += o.tets, points += o.points, deferred += o.deferred, failed += o.failed;
   candidates += o.candidates, visited += o.visited;
-  timed_steps += o.timed_steps, step_seconds += o.step_seconds, test_seconds += o.test_seconds;
+  step_seconds += o.step_seconds, test_seconds += o.test_seconds;
   near.faces += o.near.faces, near.points += o.near.points, near.tests += o.near.tests;
   near.plane_tests += o.near.plane_tests, near.exact_tests += o.near.exact_tests;
   return *this;
 }
 
-void FrontWorker::add_to_tree(std::uint32_t f) {
-  const Box box = front_.box(f);
-  const Point middle = box.centre(), half = 0.5 * (box.high - box.low);
-  tree.insert(f, {middle.x, middle.y, middle.z}, {half.x, half.y, half.z});
-}
+void FrontWorker::add_to_tree(std::uint32_t f) { tree.insert(f, front_.box(f)); }
 
 FrontWorker::Result FrontWorker::advance(std::uint32_t f) {
   if (!front_.face(f).is_alive) return Result::gone;
@@ -52,10 +48,7 @@ FrontWorker::Result FrontWorker::advance(std::uint32_t f) {
   const Result result = choose(f);
   counts.deferred += result == Result::deferred;
   counts.failed += result == Result::failed;
-  if (is_timed_) {
-    ++counts.timed_steps;
-    counts.step_seconds += seconds_now() - start;
-  }
+  if (is_timed_) counts.step_seconds += seconds_now() - start;
   counts.near = near_.counts;
   return result;
 }
@@ -63,24 +56,18 @@ FrontWorker::Result FrontWorker::advance(std::uint32_t f) {
 /// F7: the best of the points that could be taken whose tet crosses nothing.
 FrontWorker::Result FrontWorker::choose(std::uint32_t f) {
   is_local_ = set_.is_local || is_needle();
-  if (is_local_) {
-    gather_ring(f);
-  } else if (!gather(f)) {
-    return Result::deferred;
-  }
+  if (!(is_local_ ? gather_ring(f) : gather(f))) return Result::deferred;
   candidates_.clear();
   add_candidates();
-  add_new_points(f);
+  add_new_points();
   std::stable_sort(candidates_.begin(), candidates_.end(),
                    [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-  Result result = Result::failed;
   for (const Candidate& candidate : candidates_) {
     ++counts.candidates;
     const Result tried = candidate.point == kNoIndex ? try_new_point(f, candidate) : try_point(f, candidate);
-    if (tried == Result::done) return tried;
-    if (tried == Result::deferred) result = tried;
+    if (tried != Result::failed) return tried;
   }
-  return result;
+  return Result::failed;
 }
 
 /// Round such a face a ball of the size of its edges would hold far too many others.
@@ -113,14 +100,19 @@ double FrontWorker::reach_of_step(std::uint32_t f) const {
   return (set_.radius + 1) * kLongest * longest;
 }
 
+Box FrontWorker::box_with(const Point& low, const Point& high) const {
+  Box box{low, high};
+  for (const Point& p : corner_) box.add(p);
+  return box;
+}
+
 /// Faces of the front that may meet a tet over face f. @return false where they reach out of the slab
 bool FrontWorker::gather(std::uint32_t f) {
   const double radius = set_.radius * wanted_;
-  Point low = ideal_ - Point{radius, radius, radius}, high = ideal_ + Point{radius, radius, radius};
-  for (const Point& p : corner_)
-    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-  if (!slab_.holds(low, high)) return false;
-  tree.for_each_near({low.x, low.y, low.z}, {high.x, high.y, high.z}, [&](std::uint32_t g) {
+  const Point around{radius, radius, radius};
+  const Box box = box_with(ideal_ - around, ideal_ + around);
+  if (!slab_.holds(box)) return false;
+  tree.for_each_overlap(box, [&](std::uint32_t g) {
     ++counts.visited;
     if (g != f && front_.face(g).is_alive) near_.add_face(g);
   });
@@ -129,8 +121,10 @@ bool FrontWorker::gather(std::uint32_t f) {
   return true;
 }
 
-/// The faces at the corners of the face.
-void FrontWorker::gather_ring(std::uint32_t f) {
+/// The faces at the corners of the face. @return false where it reaches out of the slab: others may change the lists of
+/// its corners there
+bool FrontWorker::gather_ring(std::uint32_t f) {
+  if (!slab_.holds(front_.box(f))) return false;
   taken_in_.assign(1, f);
   for (const VertexIndex v : front_.nodes(f))
     for (std::uint32_t e = front_.first_at(v); e != kNoIndex; e = front_.next_at(e))
@@ -138,15 +132,14 @@ void FrontWorker::gather_ring(std::uint32_t f) {
         taken_in_.push_back(e >> 2);
         near_.add_face(e >> 2);
       }
+  return true;
 }
 
 /// The faces that may meet the tet of a point. @return false where it reaches out of the slab
 bool FrontWorker::gather_round(const Point& apex) {
-  Point low = apex, high = apex;
-  for (const Point& p : corner_)
-    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-  if (!slab_.holds(low, high)) return false;
-  tree.for_each_near({low.x, low.y, low.z}, {high.x, high.y, high.z}, [&](std::uint32_t g) {
+  const Box box = box_with(apex, apex);
+  if (!slab_.holds(box)) return false;
+  tree.for_each_overlap(box, [&](std::uint32_t g) {
     ++counts.visited;
     if (!front_.face(g).is_alive || std::find(taken_in_.begin(), taken_in_.end(), g) != taken_in_.end()) return;
     taken_in_.push_back(g);
@@ -182,7 +175,7 @@ void FrontWorker::add_candidates() {
   }
 }
 
-void FrontWorker::add_new_points(std::uint32_t) {
+void FrontWorker::add_new_points() {
   if (is_local_ && !set_.is_local) return;  // other faces will do that better
   const Point up = ideal_ - centroid_;
   double share = kPreferOld;

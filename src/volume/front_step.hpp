@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "delfront/size_field.hpp"
-#include "front/point_tree.hpp"
+#include "spatial/box_octree.hpp"
 #include "volume/front_neighbourhood.hpp"
 #include "volume/front_store.hpp"
 
@@ -25,15 +25,14 @@ struct FrontSettings {
 struct FrontSlab {
   int axis = 0;
   double low = -1e300, high = 1e300;
-  bool holds(const Point& low_corner, const Point& high_corner) const {
-    return low <= low_corner[axis] && high_corner[axis] < high;
-  }
+  bool holds(const Box& box) const { return low <= box.low[axis] && box.high[axis] < high; }
+  /// @brief Whether it has a part of the box; what others may change meanwhile has none.
+  bool meets(const Box& box) const { return low <= box.high[axis] && box.low[axis] < high; }
 };
 
 struct FrontCounts {
   std::uint64_t steps = 0, tets = 0, points = 0, deferred = 0, failed = 0, candidates = 0, visited = 0;
-  std::uint64_t timed_steps = 0;              ///< one in kTimed is timed ...
-  double step_seconds = 0, test_seconds = 0;  ///< ... of these, in the crossing test
+  double step_seconds = 0, test_seconds = 0;  ///< of one step in kTimed; of these, in the crossing test
   Neighbourhood::Counts near;
   FrontCounts& operator+=(const FrontCounts& other);
 };
@@ -52,7 +51,7 @@ class FrontWorker {
       : front_(front), c_(front.complex()), size_(size), set_(settings), slab_(slab), near_(front) {}
 
   /// @brief Faces of the front that may lie near those to come; some that are gone.
-  PointTree<3> tree;
+  BoxOctree tree;
   FrontStock stock;
   std::vector<std::uint32_t> made;  ///< new faces
   FrontCounts counts;
@@ -73,10 +72,11 @@ class FrontWorker {
   bool is_needle() const;
   Result choose(std::uint32_t f);
   bool gather(std::uint32_t f);
-  void gather_ring(std::uint32_t f);
+  bool gather_ring(std::uint32_t f);
   bool gather_round(const Point& apex);
   void add_candidates();
-  void add_new_points(std::uint32_t f);
+  void add_new_points();
+  Box box_with(const Point& low, const Point& high) const;
   Result try_new_point(std::uint32_t f, const Candidate& candidate);
   Result try_point(std::uint32_t f, const Candidate& candidate);
   bool is_roomy(std::size_t place, double size) const;

@@ -19,7 +19,7 @@ FrontStore::FrontStore(TetComplex& complex) : c_(complex) {
   }
   std::vector<FaceRef> behind(sides.size());
   std::vector<TetIndex> made_by(sides.size());
-  const auto new_placeholder = [&](const std::array<VertexIndex, 3>& n) {
+  const auto new_wall = [&](const std::array<VertexIndex, 3>& n) {
     const TetIndex t = c_.new_tet();
     c_.set_nodes(t, n[0], n[1], n[2], kGhost);
     c_.region[t] = TetComplex::kOutside;
@@ -30,12 +30,12 @@ FrontStore::FrontStore(TetComplex& complex) : c_(complex) {
     behind[i] = other;
     if (c_.is_ghost(other >> 2)) continue;
     const auto n = c_.face_nodes(sides[i]);
-    const TetIndex own = new_placeholder(n);
+    const TetIndex own = new_wall(n);
     behind[i] = 4 * own + 3;
     made_by[i] = own;
     if (other < sides[i]) {  // sides are in order, so the other one was met before
       const auto at = std::lower_bound(sides.begin(), sides.end(), other) - sides.begin();
-      placeholders_.push_back({made_by[static_cast<std::size_t>(at)], own});
+      walls_.push_back({made_by[static_cast<std::size_t>(at)], own});
     }
   }
   for (std::size_t i = 0; i < sides.size(); ++i)
@@ -60,8 +60,6 @@ std::uint32_t FrontStore::add_face(const std::array<VertexIndex, 3>& n, FaceRef 
   double size = 0;
   for (unsigned i = 0; i < 3; ++i) {
     size += c_.vertex[n[i]].h;
-  }
-  for (unsigned i = 0; i < 3; ++i) {
     f.node[i] = n[i];
     f.next[i] = first_[n[i]];
     first_[n[i]] = 4 * slot + i;
@@ -212,12 +210,12 @@ std::size_t FrontStore::add_tets(const TetComplex& from, const std::vector<Verte
 }
 
 void FrontStore::join() {
-  for (const auto& [a, b] : placeholders_) {
+  for (const auto& [a, b] : walls_) {
     c_.bond(c_.neigh[4 * a + 3], c_.neigh[4 * b + 3]);
     c_.kill_tet(a);
     c_.kill_tet(b);
   }
-  placeholders_.clear();
+  walls_.clear();
   for (TetIndex t = 0; t < c_.num_slots(); ++t) {
     if (c_.is_dead(t)) continue;
     for (unsigned i = 0; i < 4; ++i)

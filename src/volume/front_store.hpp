@@ -37,10 +37,12 @@ class FrontStore {
  public:
   /// @brief The front is the constrained faces of the complex, all regions are emptied.
   ///
-  /// Ghosts stay, for the hull; a face with regions on both sides gets two placeholders, which join() takes away.
+  /// Ghosts stay, for the hull; a face with regions on both sides gets a ghost behind each side of it (a wall), which
+  /// join() takes away.
   explicit FrontStore(TetComplex& complex);
 
   TetComplex& complex() { return c_; }
+  const TetComplex& complex() const { return c_; }
   const FrontFace& face(std::uint32_t f) const { return faces_[f]; }
   FrontFace& face(std::uint32_t f) { return faces_[f]; }
   std::size_t num_slots() const { return faces_.size(); }
@@ -91,7 +93,7 @@ class FrontStore {
   FlatArray<FrontFace> faces_;
   FlatArray<std::uint32_t> first_;  ///< by vertex
   std::vector<std::uint32_t> free_;
-  std::vector<std::array<TetIndex, 2>> placeholders_;  ///< behind the two sides of inner faces
+  std::vector<std::array<TetIndex, 2>> walls_;  ///< behind the two sides of inner faces
 };
 
 }  // namespace delfront

@@ -55,7 +55,7 @@ struct TestTet {
 /// The definition: whether the tet and a face of the front have more in common than a common corner, edge or face, or
 /// are one face seen from the same side. Every pair is intersected exactly.
 bool crosses(const TestTet& t, const FrontStore& front, std::uint32_t g) {
-  const TetComplex& c = const_cast<FrontStore&>(front).complex();
+  const TetComplex& c = front.complex();
   const auto n = front.nodes(g);
   const Point p[3] = {c.point(n[0]), c.point(n[1]), c.point(n[2])};
   const unsigned p_id[3] = {n[0], n[1], n[2]};
