@@ -100,6 +100,7 @@ class Front {
       left = fill_cavities(front_, waiting_, report_, context_);
     }
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
+    DELFRONT_CHECK(front_.obstacles().num_pending() == 0);
     front_.join();
     fill_report();
     return report_;
@@ -290,16 +291,10 @@ class Front {
   FrontReport report_;
 };
 
-/// Edges of curves, and points that have to stay, inside of regions.
-bool has_inner_constraints(const TetComplex& c) {
-  if (!c.kept_edges.empty()) return true;
-  std::vector<bool> on_face(c.num_vertices(), false);
-  for (FaceRef ref = 0; ref < 4 * c.num_slots(); ++ref)
-    if (!c.is_dead(ref >> 2) && !c.is_ghost(ref >> 2) && c.is_constrained(ref))
-      for (const VertexIndex v : c.face_nodes(ref)) on_face[v] = true;
+/// Embedded points have no edges that could tell theirs.
+void set_missing_sizes(TetComplex& c, const SizeField& size) {
   for (VertexIndex v = 0; v < c.num_vertices(); ++v)
-    if (c.vertex_tet[v] != kNoIndex && c.on_boundary[v] && !on_face[v]) return true;
-  return false;
+    if (c.vertex_tet[v] != kNoIndex && c.on_boundary[v] && !(c.vertex[v].h > 0)) c.vertex[v].h = size.size(c.point(v));
 }
 
 }  // namespace
@@ -312,12 +307,9 @@ FrontReport fill_by_front(BoundaryGrid& grid, const SizeField& size, Context& co
     report.gave_up = why;
     context.warn(fmt::format("no pure front here: {}; points by the front, connected by Delaunay, instead", why));
   };
-  if (has_inner_constraints(grid.complex)) {
-    give_up("curves or points are embedded in the volume");
-    return report;
-  }
   const TetComplex empty = grid.complex;
   try {
+    set_missing_sizes(grid.complex, size);
     report = Front(grid.complex, size, context).run();
   } catch (const MeshingError& e) {
     grid.complex = empty;

@@ -116,12 +116,22 @@ bool FrontWorker::gather(std::uint32_t f) {
     ++counts.visited;
     if (g != f && front_.face(g).is_alive) near_.add_face(g);
   });
+  gather_obstacles(box);
   near_.counts.faces += near_.num_faces();
   near_.counts.points += near_.num_points();
   return true;
 }
 
-/// The faces at the corners of the face. @return false where it reaches out of the slab: others may change the lists of
+/// Those that another worker may change are not looked at.
+void FrontWorker::gather_obstacles(const Box& box) {
+  const FrontObstacles& obstacles = front_.obstacles();
+  obstacles.for_each_overlap(box, [&](std::uint32_t i) {
+    if (!slab_.meets(obstacles.box(i)) || !obstacles[i].is_pending()) return;
+    if (!near_.has_obstacle(obstacles[i])) near_.add_obstacle(obstacles[i]);
+  });
+}
+
+/// The faces at the corners of the face, and obstacles within reach. @return false where it reaches out of the slab: others may change the lists of
 /// its corners there
 bool FrontWorker::gather_ring(std::uint32_t f) {
   if (!slab_.holds(front_.box(f))) return false;
@@ -132,6 +142,12 @@ bool FrontWorker::gather_ring(std::uint32_t f) {
         taken_in_.push_back(e >> 2);
         near_.add_face(e >> 2);
       }
+  if (front_.obstacles().empty()) return true;
+  const double radius = set_.radius * wanted_;
+  const Point around{radius, radius, radius};
+  const Box box = box_with(centroid_ - around, centroid_ + around);
+  if (!slab_.holds(box)) return false;
+  gather_obstacles(box);
   return true;
 }
 
@@ -145,6 +161,7 @@ bool FrontWorker::gather_round(const Point& apex) {
     taken_in_.push_back(g);
     near_.add_face(g);
   });
+  gather_obstacles(box);
   return true;
 }
 
@@ -214,7 +231,8 @@ void FrontWorker::add_tet(std::uint32_t f, VertexIndex d) {
 
 bool FrontWorker::is_roomy(std::size_t place, double size) const {
   return near_.distance_to_points(place) >= set_.to_points * size &&
-         near_.distance_to_faces(place) >= set_.to_faces * size;
+         near_.distance_to_faces(place) >= set_.to_faces * size &&
+         near_.distance_to_edges(place) >= set_.to_faces * size;
 }
 
 FrontWorker::Result FrontWorker::try_new_point(std::uint32_t f, const Candidate& candidate) {

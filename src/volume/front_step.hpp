@@ -74,6 +74,7 @@ class FrontWorker {
   bool gather(std::uint32_t f);
   bool gather_ring(std::uint32_t f);
   bool gather_round(const Point& apex);
+  void gather_obstacles(const Box& box);
   void add_candidates();
   void add_new_points();
   Box box_with(const Point& low, const Point& high) const;

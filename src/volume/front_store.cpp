@@ -7,7 +7,7 @@
 
 namespace delfront {
 
-FrontStore::FrontStore(TetComplex& complex) : c_(complex) {
+FrontStore::FrontStore(TetComplex& complex) : c_(complex), obstacles_(complex) {
   first_.assign(c_.num_vertices(), kNoIndex);
   std::vector<TetIndex> emptied;
   std::vector<FaceRef> sides;
@@ -118,6 +118,7 @@ TetIndex FrontStore::add_tet(std::uint32_t f, VertexIndex d, FrontStock& stock, 
   c_.set_nodes(t, base.node[0], base.node[1], base.node[2], d);
   c_.flag[t] = 0;
   c_.region[t] = base.region;
+  obstacles_.count_tet({base.node[0], base.node[1], base.node[2], d}, true);
   const auto close = [&](std::uint32_t g, FaceRef ref) {
     c_.bond(ref, faces_[g].behind);
     c_.set_constrained(ref, faces_[g].is_boundary);
@@ -143,6 +144,7 @@ void FrontStore::add_island(const std::array<VertexIndex, 4>& n, std::uint32_t r
   const TetIndex t = c_.new_tet();
   c_.set_nodes(t, n[0], n[1], n[2], n[3]);
   c_.region[t] = region;
+  obstacles_.count_tet(n, true);
   for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
     const auto k = c_.face_nodes(ref);
     c_.neigh[ref] = kNoIndex;
@@ -164,6 +166,8 @@ void FrontStore::remove_tet(TetIndex t, std::vector<std::uint32_t>& made) {
       made.push_back(add_face(n, other, c_.region[t], c_.is_constrained(ref), new_slot()));
     }
   }
+  const std::uint32_t* n = &c_.node[4 * t];
+  obstacles_.count_tet({n[0], n[1], n[2], n[3]}, false);
   c_.kill_tet(t);
 }
 
@@ -178,6 +182,7 @@ std::size_t FrontStore::add_tets(const TetComplex& from, const std::vector<Verte
     const std::uint32_t* n = &from.node[4 * t];
     slot[t] = c_.new_tet();
     c_.set_nodes(slot[t], number[n[0]], number[n[1]], number[n[2]], number[n[3]]);
+    obstacles_.count_tet({number[n[0]], number[n[1]], number[n[2]], number[n[3]]}, true);
     c_.region[slot[t]] = TetComplex::kOutside;
   }
   for (TetIndex t = 0; t < from.num_slots(); ++t) {
