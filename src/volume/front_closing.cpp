@@ -22,6 +22,7 @@ constexpr int kRounds = 20;
 constexpr std::size_t kMostEmptied = 4;  ///< tets a round, so that the point can follow
 constexpr std::size_t kMostFaces = 600;  ///< of a cavity that is filled round one point
 constexpr int kHalvings = 8;
+constexpr double kWidest = 32;  ///< sizes round obstacles that are emptied for constrained Delaunay
 
 void sort_out_repeats(std::vector<std::uint32_t>& numbers) {
   std::sort(numbers.begin(), numbers.end());
@@ -407,13 +408,14 @@ CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces,
   return cavity;
 }
 
-void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, std::uint32_t region, FrontReport& report,
+/// @return false where embedded edges would have to be divided: nothing has changed then
+bool close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, std::uint32_t region, FrontReport& report,
                   Context& context) {
   CavityModel cavity = model_of(front, faces, region);
   RecoveryReport recovery;
   const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, DomainOptions(), {false}, recovery, context);
   if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
-  if (recovery.curve_edges_split > 0) throw MeshingError("embedded edges in cavities would have to be divided", {});
+  if (recovery.curve_edges_split > 0) return false;
   const TetComplex& from = grid.complex;
   TetComplex& c = front.complex();
   for (auto v = static_cast<VertexIndex>(cavity.vertex.size()); v < from.num_vertices(); ++v) {
@@ -423,6 +425,37 @@ void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, st
     front.add_vertex();
   }
   report.closed_by_delaunay += front.add_tets(from, cavity.vertex);
+  return true;
+}
+
+/// Take away what is within some sizes of the obstacles that have no tets: edges are found more easily where there is
+/// room.
+/// @return the faces of the region
+std::vector<std::uint32_t> empty_along_obstacles(FrontStore& front, std::uint32_t region, double sizes,
+                                                 FrontReport& report) {
+  const TetComplex& c = front.complex();
+  std::vector<std::array<VertexIndex, 2>> pending;
+  for (std::size_t i = 0; i < front.obstacles().size(); ++i)
+    if (const FrontObstacle& o = front.obstacles()[i]; o.is_pending() && o.region == region) pending.push_back({o.a, o.b});
+  const auto is_near = [&](VertexIndex v) {
+    return std::any_of(pending.begin(), pending.end(), [&](const auto& ends) {
+      const Point to = c.point(v) - c.point(ends[0]), along = c.point(ends[1]) - c.point(ends[0]);
+      const double l2 = squared_length(along), t = l2 > 0 ? std::clamp(dot(to, along) / l2, 0.0, 1.0) : 0;
+      return length(to - t * along) < sizes * c.vertex[v].h;
+    });
+  };
+  std::vector<std::uint32_t> made;
+  for (TetIndex t = 0; t < c.num_slots(); ++t) {
+    if (c.is_dead(t) || c.is_ghost(t) || c.region[t] != region) continue;
+    const std::uint32_t* n = &c.node[4 * t];
+    if (std::none_of(n, n + 4, is_near)) continue;
+    front.remove_tet(t, made);
+    ++report.cells_emptied;
+  }
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t f = 0; f < front.num_slots(); ++f)
+    if (front.face(f).is_alive && front.face(f).region == region) faces.push_back(f);
+  return faces;
 }
 
 }  // namespace
@@ -431,7 +464,14 @@ void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& face
                        Context& context) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of_region;
   for (const std::uint32_t f : faces) of_region[front.face(f).region].push_back(f);
-  for (const auto& [region, some] : of_region) close_region(front, some, region, report, context);
+  for (auto& [region, some] : of_region) {
+    double sizes = 1;
+    while (!close_region(front, some, region, report, context)) {
+      if (sizes > kWidest) throw MeshingError("embedded edges in cavities would have to be divided");
+      some = empty_along_obstacles(front, region, sizes, report);
+      sizes *= 2;
+    }
+  }
 }
 
 }  // namespace delfront
