@@ -415,7 +415,9 @@ bool close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, st
   RecoveryReport recovery;
   const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, DomainOptions(), {false}, recovery, context);
   if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
-  if (recovery.curve_edges_split > 0) return false;
+  const bool has_all = recovery.curve_edges == cavity.model.curves.size() && recovery.curve_edges_split == 0 &&
+                       recovery.embedded_points == cavity.model.corners.size();
+  if (!has_all) return false;
   const TetComplex& from = grid.complex;
   TetComplex& c = front.complex();
   for (auto v = static_cast<VertexIndex>(cavity.vertex.size()); v < from.num_vertices(); ++v) {
@@ -464,9 +466,11 @@ void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& face
                        Context& context) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of_region;
   for (const std::uint32_t f : faces) of_region[front.face(f).region].push_back(f);
+  Context quiet = context;  // it warns of edges that it divides
+  quiet.on_log = nullptr;
   for (auto& [region, some] : of_region) {
     double sizes = 1;
-    while (!close_region(front, some, region, report, context)) {
+    while (!close_region(front, some, region, report, quiet)) {
       if (sizes > kWidest) throw MeshingError("embedded edges in cavities would have to be divided");
       some = empty_along_obstacles(front, region, sizes, report);
       sizes *= 2;

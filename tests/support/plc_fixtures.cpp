@@ -312,6 +312,10 @@ FilledByFront expect_filled_by_front(const Model& model, const BoundaryGrid& emp
   const auto field = build_boundary_size_field(sizes, context);
   result.report = fill_by_front(result.grid, *field, context);
   EXPECT_EQ(result.grid.complex.find_defect(), "");
+  std::vector<TetIndex> scratch;
+  for (const auto& pieces : result.grid.curve_pieces)
+    for (const auto& [a, b] : pieces)
+      EXPECT_NE(result.grid.complex.find_edge(a, b, scratch), kNoIndex) << "an edge of a curve is not there";
   expect_same_boundary(model, result.grid, domain.keep.empty() && domain.keep_points.empty());
   for (const Finding& f : check(to_mesh(result.grid, model))) EXPECT_NE(f.severity, Severity::error) << f.message;
   return result;
