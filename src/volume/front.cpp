@@ -84,7 +84,7 @@ class CellMarks {
 class Front {
  public:
   Front(TetComplex& complex, const SizeField& size, Context& context)
-      : c_(complex), front_(complex), size_(size), context_(context) {
+      : c_(complex), front_(complex, &size), context_(context) {
     for (std::uint32_t f = 0; f < front_.num_slots(); ++f) waiting_.push_back(f);
     live_ = waiting_;
   }
@@ -172,7 +172,7 @@ class Front {
     double reach = 0;
     for (const std::uint32_t f : active_) {
       at.push_back(middle(f)[axis]);
-      reach += 2 * settings_->radius * static_cast<double>(front_.face(f).size);
+      reach += 2 * settings_->radius * static_cast<double>(front_.face(f).size) * front_.frame(f).reach()[axis];
     }
     const auto [low, high] = std::minmax_element(at.begin(), at.end());
     const double cuts = kMostDeferred * (*high - *low) * static_cast<double>(at.size()) / (2 * reach);
@@ -205,7 +205,7 @@ class Front {
     }
     std::vector<FrontWorker> workers;
     for (std::size_t i = 0; i < slabs.size(); ++i) {
-      workers.emplace_back(front_, size_, *settings_, slabs[i]);
+      workers.emplace_back(front_, *settings_, slabs[i]);
       workers.back().stock = front_.take(faces[i].size());
     }
     parallel_for(context_.threads, slabs.size(),
@@ -280,7 +280,6 @@ class Front {
 
   TetComplex& c_;
   FrontStore front_;
-  const SizeField& size_;
   Context& context_;
   const FrontSettings* settings_ = nullptr;
   std::vector<std::uint32_t> waiting_, skipped_, active_;  ///< faces
@@ -290,12 +289,6 @@ class Front {
   FrontCounts counts_;
   FrontReport report_;
 };
-
-/// Embedded points have no edges that could tell theirs.
-void set_missing_sizes(TetComplex& c, const SizeField& size) {
-  for (VertexIndex v = 0; v < c.num_vertices(); ++v)
-    if (c.vertex_tet[v] != kNoIndex && c.on_boundary[v] && !(c.vertex[v].h > 0)) c.vertex[v].h = size.size(c.point(v));
-}
 
 }  // namespace
 
@@ -309,7 +302,6 @@ FrontReport fill_by_front(BoundaryGrid& grid, const SizeField& size, Context& co
   };
   const TetComplex empty = grid.complex;
   try {
-    set_missing_sizes(grid.complex, size);
     report = Front(grid.complex, size, context).run();
   } catch (const MeshingError& e) {
     grid.complex = empty;

@@ -104,7 +104,7 @@ class CavityFiller {
     for_each_obstacle([&](const FrontObstacle& o) {
       if (!winds_round(0.5 * (c_.point(o.a) + c_.point(o.b)))) return;
       for (const VertexIndex v : {o.a, o.b}) {
-        batch_.measure(c_.point(v), quality_);
+        batch_.measure(in_frame(v), quality_);
         double worst = front_.first_at(v) == kNoIndex ? 2 : 1;  // one that nothing hangs on yet goes first
         for (std::size_t i = 0; i < faces_.size(); ++i)
           if (!has_corner(faces_[i], v)) worst += std::min(quality_[i] - 1, 0.0) / static_cast<double>(faces_.size());
@@ -177,21 +177,25 @@ class CavityFiller {
         }
       }
     }
+    frame_ = front_.frame(f);
     batch_.clear();
     for (const std::uint32_t g : faces_) {
       const auto n = front_.nodes(g);
-      batch_.add(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]));
+      batch_.add(in_frame(n[0]), in_frame(n[1]), in_frame(n[2]));
     }
   }
+
+  /// Quality is that in the frame of one of the faces.
+  Point in_frame(VertexIndex v) const { return frame_.to_frame(c_.point(v)); }
 
   /// Uphill in the worst quality, from the mean of the corners.
   Point find_point() {
     Point p;
     double extent = 0;
     for (const std::uint32_t f : faces_)
-      for (const VertexIndex v : front_.nodes(f)) p = p + c_.point(v);
+      for (const VertexIndex v : front_.nodes(f)) p = p + in_frame(v);
     p = (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
-    for (const std::uint32_t f : faces_) extent = std::max(extent, distance(c_.point(front_.nodes(f)[0]), p));
+    for (const std::uint32_t f : faces_) extent = std::max(extent, distance(in_frame(front_.nodes(f)[0]), p));
     double best = batch_.worst(p), step = 0.25 * extent;
     for (int k = 0; k < kHalvings; ++k) {
       bool moved = false;
@@ -205,12 +209,12 @@ class CavityFiller {
         }
       if (!moved) step *= 0.5;
     }
-    return p;
+    return frame_.from_frame(p);
   }
 
   /// The tets behind faces that p sees badly go; those of the given boundary stay, however badly.
   std::size_t empty_behind_bad_faces(const Point& p, double floor) {
-    batch_.measure(p, quality_);
+    batch_.measure(frame_.to_frame(p), quality_);
     made_.clear();
     std::size_t emptied = 0;
     order_.clear();
@@ -283,7 +287,8 @@ class CavityFiller {
     for (const VertexIndex v : front_.nodes(faces_[1])) {
       if (v == n[0] || v == n[1] || v == n[2]) continue;
       const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]), d = c_.point(v);
-      if (measure_quality(a, b, c, d) < floor || orient3d(a, b, c, d) <= 0) continue;
+      const double quality = measure_quality(in_frame(n[0]), in_frame(n[1]), in_frame(n[2]), in_frame(v));
+      if (quality < floor || orient3d(a, b, c, d) <= 0) continue;
       end_ = v;
       return is_clear(d) ? v : kNoIndex;
     }
@@ -304,6 +309,7 @@ class CavityFiller {
     const VertexIndex v = c_.take_vertices(1)[0];
     c_.set_vertex(v, p, h / static_cast<double>(faces_.size()));
     front_.add_vertex();
+    if (front_.sizes().are_stretched()) front_.sizes().ask(v);
     ++report_.points;
     return v;
   }
@@ -321,6 +327,7 @@ class CavityFiller {
   };
   std::set<std::array<VertexIndex, 3>> given_up_;
   std::vector<Emptied> emptied_;  ///< tets, in order
+  FrontFrame frame_;
   FaceBatch batch_;
   std::vector<double> quality_;
 };
@@ -425,6 +432,7 @@ bool close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, st
     c.set_vertex(own, from.point(v), from.vertex[v].h);
     cavity.vertex.push_back(own);
     front.add_vertex();
+    if (front.sizes().are_stretched()) front.sizes().ask(own);
   }
   report.closed_by_delaunay += front.add_tets(from, cavity.vertex);
   return true;

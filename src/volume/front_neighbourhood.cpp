@@ -30,10 +30,12 @@ void Neighbourhood::start(std::uint32_t f) {
   edges_.clear();
   const auto n = front_.nodes(f);
   const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
+  if (front_.sizes().are_stretched()) frame_ = front_.frame(f);
+  bound_ = kHeightBound * frame_.condition();
   origin_ = (1.0 / 3) * (a + b + c);
-  normal_ = cross(b - a, c - a);
+  normal_ = cross(frame_.along(b - a), frame_.along(c - a));
   const double l = length(normal_);
-  base_ = {normal_, dot(normal_, a - origin_), 0, l};
+  base_ = {normal_, dot(normal_, frame_.along(a - origin_)), 0, l};
   if (l > 0) normal_ = normal_ / l;
   for (const VertexIndex v : n) local(v);
   for (unsigned i = 0; i < 3; ++i) {
@@ -45,7 +47,7 @@ void Neighbourhood::start(std::uint32_t f) {
   }
   double extent = 0;
   for (std::size_t p = 0; p < 3; ++p) extent = std::max(extent, norm_[p]);
-  base_.bound = kHeightBound * extent * extent;
+  base_.bound = bound_ * extent * extent;
 }
 
 std::uint32_t Neighbourhood::local(VertexIndex v) {
@@ -54,7 +56,7 @@ std::uint32_t Neighbourhood::local(VertexIndex v) {
     if (table_[h].id == v) return table_[h].index;
   const auto index = static_cast<std::uint32_t>(id_.size());
   table_[h] = {v, index, step_};
-  const Point at = c_.point(v), r = at - origin_;
+  const Point at = c_.point(v), r = frame_.along(at - origin_);
   id_.push_back(v);
   x_.push_back(r.x);
   y_.push_back(r.y);
@@ -142,7 +144,7 @@ bool Neighbourhood::leaves_narrow_wedge(const Face& face, std::size_t apex, doub
 }
 
 std::size_t Neighbourhood::add_place(Point absolute) {
-  const Point r = absolute - origin_;
+  const Point r = frame_.along(absolute - origin_);
   id_.push_back(kNoIndex);
   x_.push_back(r.x);
   y_.push_back(r.y);
@@ -170,7 +172,7 @@ Neighbourhood::Plane Neighbourhood::plane_through(std::size_t a, std::size_t b, 
   plane.offset = dot(plane.normal, p);
   plane.length = length(plane.normal);
   const double extent = std::max({norm_[a], norm_[b], norm_[c]});
-  plane.bound = kHeightBound * extent * extent;
+  plane.bound = bound_ * extent * extent;
   return plane;
 }
 

@@ -46,6 +46,8 @@ class Neighbourhood {
   double height(std::size_t p) const { return height_[p]; }
   Point origin() const { return origin_; }
   Point normal() const { return normal_; }
+  /// @brief Coordinates, heights and distances here are those of the face's frame; what is decided is decided in space.
+  const FrontFrame& frame() const { return frame_; }
 
   /// @brief A place where there is no point yet, as the last one; drop_place() takes it away.
   std::size_t add_place(Point absolute);
@@ -112,6 +114,8 @@ class Neighbourhood {
 
   FrontStore& front_;
   const TetComplex& c_;
+  FrontFrame frame_;
+  double bound_ = 0;  ///< of roundings of heights
   Point origin_, normal_;
   Plane base_;
   std::uint64_t step_ = 0;

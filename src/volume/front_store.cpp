@@ -7,7 +7,8 @@
 
 namespace delfront {
 
-FrontStore::FrontStore(TetComplex& complex) : c_(complex), obstacles_(complex) {
+FrontStore::FrontStore(TetComplex& complex, const SizeField* field)
+    : c_(complex), obstacles_(complex), sizes_(complex, field) {
   first_.assign(c_.num_vertices(), kNoIndex);
   std::vector<TetIndex> emptied;
   std::vector<FaceRef> sides;
@@ -101,7 +102,7 @@ FrontStock FrontStore::take(std::size_t tets) {
   faces_.resize(total);
   for (std::size_t f = first; f < total; ++f) faces_[f].is_alive = false;
   stock.faces = {std::move(used), static_cast<TetIndex>(first), static_cast<TetIndex>(total)};
-  first_.resize(c_.num_vertices(), kNoIndex);
+  add_vertex();
   return stock;
 }
 
@@ -171,7 +172,10 @@ void FrontStore::remove_tet(TetIndex t, std::vector<std::uint32_t>& made) {
   c_.kill_tet(t);
 }
 
-void FrontStore::add_vertex() { first_.resize(c_.num_vertices(), kNoIndex); }
+void FrontStore::add_vertex() {
+  first_.resize(c_.num_vertices(), kNoIndex);
+  sizes_.make_room();
+}
 
 std::size_t FrontStore::add_tets(const TetComplex& from, const std::vector<VertexIndex>& number) {
   std::vector<TetIndex> slot(from.num_slots(), kNoIndex);

@@ -7,6 +7,7 @@
 #include "base/flat_array.hpp"
 #include "tetra/tet_complex.hpp"
 #include "volume/front_obstacles.hpp"
+#include "volume/front_sizes.hpp"
 
 namespace delfront {
 
@@ -40,12 +41,17 @@ class FrontStore {
   ///
   /// Ghosts stay, for the hull; a face with regions on both sides gets a ghost behind each side of it (a wall), which
   /// join() takes away.
-  explicit FrontStore(TetComplex& complex);
+  /// @param field  asked for sizes at embedded points and new vertices, and for directions; may be null in tests of
+  /// other things
+  explicit FrontStore(TetComplex& complex, const SizeField* field = nullptr);
 
   TetComplex& complex() { return c_; }
   const TetComplex& complex() const { return c_; }
   /// @brief Embedded edges and points, counted as tets come and go.
   const FrontObstacles& obstacles() const { return obstacles_; }
+  FrontSizes& sizes() { return sizes_; }
+  const FrontSizes& sizes() const { return sizes_; }
+  FrontFrame frame(std::uint32_t f) const { return sizes_.frame(nodes(f)); }
   const FrontFace& face(std::uint32_t f) const { return faces_[f]; }
   FrontFace& face(std::uint32_t f) { return faces_[f]; }
   std::size_t num_slots() const { return faces_.size(); }
@@ -95,6 +101,7 @@ class FrontStore {
 
   TetComplex& c_;
   FrontObstacles obstacles_;
+  FrontSizes sizes_;
   FlatArray<FrontFace> faces_;
   FlatArray<std::uint32_t> first_;  ///< by vertex
   std::vector<std::uint32_t> free_;
