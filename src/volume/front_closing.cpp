@@ -299,7 +299,8 @@ class CavityFiller {
     FrontStock stock = front_.take(faces_.size());
     made_.clear();
     for (const std::uint32_t f : faces_)
-      if (front_.face(f).is_alive && !has_corner(f, apex)) ++report_.cells_refilled, front_.add_tet(f, apex, stock, made_);
+      if (front_.face(f).is_alive && !has_corner(f, apex))
+        ++report_.cells_refilled, front_.add_tet(f, apex, stock, made_);
     front_.give(stock);
   }
 
@@ -446,7 +447,8 @@ std::vector<std::uint32_t> empty_along_obstacles(FrontStore& front, std::uint32_
   const TetComplex& c = front.complex();
   std::vector<std::array<VertexIndex, 2>> pending;
   for (std::size_t i = 0; i < front.obstacles().size(); ++i)
-    if (const FrontObstacle& o = front.obstacles()[i]; o.is_pending() && o.region == region) pending.push_back({o.a, o.b});
+    if (const FrontObstacle& o = front.obstacles()[i]; o.is_pending() && o.region == region)
+      pending.push_back({o.a, o.b});
   const auto is_near = [&](VertexIndex v) {
     return std::any_of(pending.begin(), pending.end(), [&](const auto& ends) {
       const Point to = c.point(v) - c.point(ends[0]), along = c.point(ends[1]) - c.point(ends[0]);

@@ -19,9 +19,7 @@ struct Symmetric3 {
     return {xx + o.xx, xy + o.xy, xz + o.xz, yy + o.yy, yz + o.yz, zz + o.zz};
   }
   Symmetric3 scaled(double f) const { return {f * xx, f * xy, f * xz, f * yy, f * yz, f * zz}; }
-  double determinant() const {
-    return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  }
+  double determinant() const { return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz); }
   Symmetric3 inverse() const {
     return Symmetric3{yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy,
                       xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy}

@@ -10,8 +10,8 @@
 
 namespace delfront {
 
-/// @brief The faces of the front near one of them, and the edges and points that lie in the way (FrontObstacles), copied
-/// into small arrays, and the test whether a tet over that face crosses any of them (F12).
+/// @brief The faces of the front near one of them, and the edges and points that lie in the way (FrontObstacles),
+/// copied into small arrays, and the test whether a tet over that face crosses any of them (F12).
 ///
 /// Three layers, each about ten times as dear as the one before: faces whose box lies apart are not taken in at all;
 /// faces whose corners all lie outside of one side of the tet (shape functions below 0); what is left is decided by

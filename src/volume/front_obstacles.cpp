@@ -60,10 +60,12 @@ void FrontObstacles::find_regions(const TetComplex& c) {
 }
 
 std::size_t FrontObstacles::find(VertexIndex a, VertexIndex b) const {
-  const auto at = std::lower_bound(
-      obstacles_.begin(), obstacles_.end(), std::array{a, b},
-      [](const FrontObstacle& o, const std::array<VertexIndex, 2>& e) { return o.a != e[0] ? o.a < e[0] : o.b < e[1]; });
-  return at != obstacles_.end() && at->a == a && at->b == b ? static_cast<std::size_t>(at - obstacles_.begin()) : size();
+  const auto at = std::lower_bound(obstacles_.begin(), obstacles_.end(), std::array{a, b},
+                                   [](const FrontObstacle& o, const std::array<VertexIndex, 2>& e) {
+                                     return o.a != e[0] ? o.a < e[0] : o.b < e[1];
+                                   });
+  return at != obstacles_.end() && at->a == a && at->b == b ? static_cast<std::size_t>(at - obstacles_.begin())
+                                                            : size();
 }
 
 void FrontObstacles::count(const std::array<VertexIndex, 4>& nodes, bool comes) {

@@ -133,8 +133,8 @@ void FrontWorker::gather_obstacles(const Box& box) {
   });
 }
 
-/// The faces at the corners of the face, and obstacles within reach. @return false where it reaches out of the slab: others may change the lists of
-/// its corners there
+/// The faces at the corners of the face, and obstacles within reach. @return false where it reaches out of the slab:
+/// others may change the lists of its corners there
 bool FrontWorker::gather_ring(std::uint32_t f) {
   if (!slab_.holds(front_.box(f))) return false;
   taken_in_.assign(1, f);

@@ -94,7 +94,7 @@ class FrontWorker {
   bool is_timed_ = false;
   Point place_[3];                               ///< corners of the face, in space
   Point corner_[3], centroid_, normal_, ideal_;  ///< in its frame, as all lengths are
-  double edge_ = 0, wanted_ = 0;  ///< mean edge, wanted edge
+  double edge_ = 0, wanted_ = 0;                 ///< mean edge, wanted edge
   double area_ = 0;
   std::vector<Candidate> candidates_;
   std::vector<std::uint32_t> taken_in_;  ///< faces, in local steps

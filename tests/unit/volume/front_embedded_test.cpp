@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "delfront/size_field.hpp"
 #include "delfront/grid_check.hpp"
+#include "delfront/size_field.hpp"
 #include "delfront/surface_check.hpp"
 #include "support/plc_fixtures.hpp"
 #include "support/support.hpp"
@@ -53,9 +53,7 @@ TEST(FrontObstacles, segments_and_tets_on_a_lattice_as_by_fractions) {
   int met = 0, apart = 0;
   for (int i = 0; i < 300000; ++i) {
     std::uniform_int_distribution<int> place(0, 1 + i % 5);
-    const auto point = [&] {
-      return Point{double(place(random)), double(place(random)), double(place(random))};
-    };
+    const auto point = [&] { return Point{double(place(random)), double(place(random)), double(place(random))}; };
     std::array<NumberedPoint, 4> tet{{{0, point()}, {1, point()}, {2, point()}, {3, point()}}};
     if (orient3d(tet[0].at, tet[1].at, tet[2].at, tet[3].at) <= 0) continue;
     std::array<NumberedPoint, 2> segment{{{4, point()}, {5, point()}}};
@@ -76,9 +74,7 @@ TEST(FrontObstacles, segments_and_tets_on_a_lattice_as_by_fractions) {
 class Even : public SizeField {
  public:
   explicit Even(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override {
-    std::fill(size.begin(), size.end(), h_);
-  }
+  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
   double lower_bound(const Box&) const override { return h_; }
 
  private:
@@ -188,8 +184,7 @@ TEST(FrontEmbedded, a_thousand_points) {
   std::uniform_real_distribution<double> unit(0.01, 0.99);
   for (const double h : {0.2, 0.05}) {
     Facets body = gridded_cube(5);
-    for (int i = 0; i < 1000; ++i)
-      body.corners.push_back(body.add_point({unit(random), unit(random), unit(random)}));
+    for (int i = 0; i < 1000; ++i) body.corners.push_back(body.add_point({unit(random), unit(random), unit(random)}));
     EXPECT_EQ(expect_embedded(body, Even(h)).recovery.embedded_points, 1000u);
   }
 }
@@ -267,7 +262,8 @@ Facets random_room(std::mt19937& random) {
   for (int chain = 0; chain < 1 + static_cast<int>(random() % 4); ++chain) {
     std::vector<std::size_t> curve{random() % 2 == 0 ? random() % 8 : body.add_point(place())};
     for (std::size_t i = 0; i < 1 + random() % 12; ++i) {
-      const Point p = body.points[curve.back()] + step * (2 * Point{unit(random), unit(random), unit(random)} - Point{1, 1, 1});
+      const Point p =
+          body.points[curve.back()] + step * (2 * Point{unit(random), unit(random), unit(random)} - Point{1, 1, 1});
       const bool inside = std::min({p.x, p.y, p.z}) > 0.01 && std::max({p.x, p.y, p.z}) < 0.99;
       if (inside && is_free(p)) curve.push_back(body.add_point(p));
     }

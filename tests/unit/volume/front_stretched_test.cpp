@@ -33,9 +33,7 @@ Stretching stretching_at_30_degrees(double s1) {
 class Stretched : public SizeField {
  public:
   Stretched(double h, std::function<double(Point)> s1) : h_(h), s1_(std::move(s1)) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override {
-    std::fill(size.begin(), size.end(), h_);
-  }
+  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
   void metrics(std::span<const Point> at, std::span<Metric> metric) const override {
     for (std::size_t i = 0; i < at.size(); ++i) metric[i] = stretched_metric(h_, stretching_at_30_degrees(s1_(at[i])));
   }
