@@ -26,15 +26,10 @@ void give_back_free_memory() {
 #endif
 }
 
-/// Only the front makes stretched cells. The other methods take the least size in all directions.
-bool is_stretched(const Options& options, const SizeField& size) {
-  return options.volume.method == "front" && !size.is_isotropic();
-}
-
 /// Cells that are stretched as asked have small angles, which improvement would undo.
 void improve(TetComplex& complex, const SizeField& size, const Options& options, Report& report, Context& context) {
   if (!options.improve.enabled) return;
-  if (is_stretched(options, size) && report.front.gave_up.empty())
+  if (makes_stretched_cells(options, &size) && report.front.gave_up.empty())
     context.warn("the sizes ask for stretched cells: improvement, which goes by angles, was left out");
   else
     report.improve = improve_complex(complex, size, options.improve, context);
@@ -53,7 +48,7 @@ Outcome generate(Model model, const Options& all_options, Context& context, std:
   if (is_new_surface && !geometry) geometry = &given;
   asked = coarse_sizes(std::move(asked), all_options, model.bounding_box(), context);
   Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
-  if (!is_stretched(options, *prepared.size))  // least sizes say little about stretched cells
+  if (!makes_stretched_cells(options, prepared.size.get()))  // least sizes say little about stretched cells
     refuse_too_many_cells(prepared, options.size, all_options.refine.levels, context);
   CoarseLimit limit(context, all_options, false);
   auto [grid, size] = std::move(prepared);
