@@ -42,8 +42,8 @@ struct RefineReport {
   KernelCounts kernel;
 };
 
-/// @brief What an advancing front did (F1-F17), in the plane or in the volume. Embedded edges and points are in its grid
-/// like faces; those that no sweep reached are in the cavities that are closed by constrained Delaunay.
+/// @brief What an advancing front did (F1-F17), in the plane or in the volume. Embedded edges and points are in its
+/// grid; those that no sweep reached are in the cavities that are closed by constrained Delaunay.
 struct FrontReport {
   std::size_t sides_processed = 0;  ///< edges or faces of the front, some more than once
   std::size_t cells = 0, points = 0;

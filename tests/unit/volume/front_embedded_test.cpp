@@ -229,12 +229,12 @@ TEST(FrontEmbedded, the_same_grid_for_any_number_of_threads) {
   const BoundaryGrid empty = recovered(model, recovery);
   BoundaryGrid first = empty;
   Context context;
-  const FrontReport report = fill_by_front(first, Even(0.045), context);
+  const FrontReport report = fill_by_front(first, Even(0.06), context);
   EXPECT_EQ(report.gave_up, "");
   for (const int threads : {2, 3}) {
     BoundaryGrid other = empty;
     context.threads = threads;
-    fill_by_front(other, Even(0.045), context);
+    fill_by_front(other, Even(0.06), context);
     EXPECT_EQ(first.complex.node, other.complex.node);
     EXPECT_EQ(first.complex.neigh, other.complex.neigh);
   }
