@@ -283,7 +283,7 @@ TEST(FrontEmbedded, random_rooms) {
     Context context;
     if (has_errors(check_surface(to_model(body), context).findings)) continue;  // chains that meet
     ++tried;
-    const double size = std::pow(10.0, -0.5 - std::uniform_real_distribution<double>(0, 0.8)(random));
+    const double size = std::pow(10.0, -0.5 - std::uniform_real_distribution<double>(0, 0.6)(random));
     expect_embedded(body, Even(size));
     if (HasFailure()) return;
   }
