@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Smooth geometry gridded: analytic shapes at several sizes, uniform and graded by 20, mapped and directly in space.
+// Prints the table of docs/brep.md. Usage: brep_bench [largest number of triangles, 1e5] [name of one shape]
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+#include "delfront/brep_shapes.hpp"
+#include "delfront/errors.hpp"
+
+namespace {
+
+using namespace delfront;
+
+/// h at the place, rising evenly to 20 h at the far end of the box; grading 1: uniform.
+class LinearSize : public SizeField {
+ public:
+  LinearSize(double h, double grading, const Box& box) : h_(h), grading_(grading), box_(box) {}
+  void sizes(std::span<const Point> at, std::span<double> size) const override {
+    const double wide = box_.high.x - box_.low.x;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      size[i] = h_ * (1 + (grading_ - 1) * std::abs(at[i].x - box_.low.x) / wide);
+  }
+  double lower_bound(const Box&) const override { return h_; }
+  double largest() const override { return h_ * grading_; }
+
+ private:
+  double h_, grading_;
+  Box box_;
+};
+
+std::array<std::array<Point, 4>, 4> wavy_patch() {
+  std::array<std::array<Point, 4>, 4> b;
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t j = 0; j < 4; ++j)
+      b[i][j] = {double(i) + 0.3 * double(j % 2), double(j) - 0.2 * double(i * i) / 3, (i + j) % 2 ? 1.2 : -0.8};
+  return b;
+}
+
+struct Shape {
+  std::string name;
+  Brep brep;
+  Box box;
+  double area;
+};
+
+Box box(double x, double y, double z) {
+  Box b;
+  b.add(Point{-x, -y, -z});
+  b.add(Point{x, y, z});
+  return b;
+}
+
+std::vector<Shape> shapes() {
+  const double pi = M_PI;
+  const SpaceFrame frame;
+  std::vector<Shape> all;
+  all.push_back({"sphere", make_sphere({0, 0, 0}, 1), box(1, 1, 1), 4 * pi});
+  all.push_back({"torus", make_torus(frame, 2, 0.6), box(2.6, 2.6, 0.6), 4 * pi * pi * 1.2});
+  all.push_back({"cylinder", make_cylinder(frame, 1, 3), box(1, 1, 3), 8 * pi});
+  all.push_back({"cone", make_cone(frame, pi / 6, 2), box(1.155, 1.155, 2), 4 * pi});
+  Box wavy;
+  wavy.add(Point{0, -2, -1});
+  wavy.add(Point{3.3, 3, 1});
+  all.push_back({"bicubic", make_bicubic(wavy_patch()), wavy, 11});
+  const SurfacePointer sphere = make_sphere_surface(frame, 1);
+  all.push_back({"half sphere", make_rectangle_on(sphere, {{0, -pi / 2}, {pi, pi / 2}}), box(1, 1, 1), 2 * pi});
+  Brep holed = make_bicubic(wavy_patch());
+  cut_hole(holed, FaceId(std::size_t(0)), {0.5, 0.5}, 0.2, 0.15);
+  all.push_back({"holed bicubic", std::move(holed), wavy, 10});
+  return all;
+}
+
+void print_row(const Shape& shape, double grading, double h, BrepOptions::Method method) {
+  const LinearSize size(h, grading, shape.box);
+  BrepOptions options;
+  options.method = method;
+  Context context;
+  BrepGridReport r;
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    grid_brep(shape.brep, size, options, r, context);
+  } catch (const Error& e) {
+    std::printf("| %s | %g | %s | failed: %s |\n", shape.name.c_str(), grading,
+                method == BrepOptions::Method::direct ? "direct" : "mapped", e.what());
+    return;
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  bool is_mapped = true;
+  for (const BrepFaceReport& face : r.faces) is_mapped = is_mapped && face.is_mapped;
+  std::printf("| %s | %g | %s | %zu | %.1f | %.1f | %zu | %.2g | %.1f | %zu | %.0f |\n", shape.name.c_str(), grading,
+              is_mapped ? "mapped" : "direct", r.triangles, r.min_angle_deg, r.mean_min_angle_deg, r.below_25_deg,
+              r.largest_distance, r.largest_normal_angle_deg, r.rounds, double(r.triangles) / seconds);
+  for (const BrepFaceReport& face : r.faces)
+    if (!face.is_mapped && method != BrepOptions::Method::direct)
+      std::printf("  %s: %s\n", face.name.c_str(), face.why.c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const double largest = argc > 1 ? std::atof(argv[1]) : 1e5;
+  std::printf(
+      "| shape | grading | way | triangles | smallest angle | mean of smallest | below 25 | distance | normals | rounds "
+      "| triangles/s |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const Shape& shape : shapes()) {
+    if (argc > 2 && shape.name != argv[2]) continue;
+    for (const auto method : {BrepOptions::Method::choose, BrepOptions::Method::direct})
+      for (const double grading : {1.0, 20.0})
+        for (double n = 1e3; n <= largest * 1.01; n *= 10) {
+          if (method == BrepOptions::Method::direct && n > 1e4) continue;
+          // triangles of side s have sqrt(3) / 4 s^2; a grading's mean of 1 / s^2 is about 1 / grading
+          const double h = std::sqrt(shape.area / n / (std::sqrt(3.0) / 4) / grading);
+          print_row(shape, grading, h, method);
+        }
+  }
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "brep/wanted_size.hpp"
+
+namespace delfront {
+namespace {
+
+constexpr int kSamples = 24;        ///< each way
+constexpr double kSmoothPole = 0.99;  ///< least cosine between normals round a pole that is no tip
+
+}  // namespace
+
+void WantedSize::find_tips(const Brep& brep) {
+  for (const BrepFace& face : brep.faces)
+    for (const auto& loop : face.loops)
+      for (const BrepUse& use : loop) {
+        const BrepEdge& edge = brep.edges[use.edge];
+        if (!edge.is_degenerate()) continue;
+        const Point first = face.surface->normal(use.curve->at(edge.range[0]));
+        for (int i = 1; i <= kSamples; ++i) {
+          const double t = edge.range[0] + (edge.range[1] - edge.range[0]) * i / kSamples;
+          if (dot(first, face.surface->normal(use.curve->at(t))) > kSmoothPole) continue;
+          tips_.push_back(brep.corners[edge.corners[0]].at);
+          break;
+        }
+      }
+}
+
+bool WantedSize::is_lowered_on(const SmoothSurface& surface, const ParameterBox& box) const {
+  for (int i = 0; i < kSamples; ++i) {
+    std::vector<Point> at;
+    std::vector<double> bend;
+    for (int j = 0; j < kSamples; ++j) {
+      const double x = (i + 0.5) / kSamples, y = (j + 0.5) / kSamples;
+      const SurfaceDerivatives s = surface.derivatives(
+          {box.low.x + x * (box.high.x - box.low.x), box.low.y + y * (box.high.y - box.low.y)});
+      at.push_back(s.at);
+      bend.push_back(largest_curvature(s));
+    }
+    std::vector<double> asked(at.size());
+    asked_.sizes(at, asked);
+    for (std::size_t j = 0; j < at.size(); ++j)
+      if (lowered(asked[j], bend[j], at[j]) < asked[j]) return true;
+  }
+  return false;
+}
+
+}  // namespace delfront
