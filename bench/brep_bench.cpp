@@ -38,7 +38,7 @@ std::array<std::array<Point, 4>, 4> wavy_patch() {
   std::array<std::array<Point, 4>, 4> b;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j)
-      b[i][j] = {double(i) + 0.3 * double(j % 2), double(j) - 0.2 * double(i * i) / 3, (i + j) % 2 ? 1.2 : -0.8};
+      b[i][j] = {double(i) + 0.3 * double(j % 2), double(j) - 0.2 * double(i * i) / 3, (i + j) % 2 ? 0.5 : -0.3};
   return b;
 }
 

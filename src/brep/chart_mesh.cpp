@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "planar/edit.hpp"
 
@@ -13,6 +14,8 @@ constexpr double kRegular = 0.995;     ///< mean quality of a star that is left 
 constexpr double kSmoothAngle = 0.41;  ///< squared sine of 40 degrees: worse angles are not made
 constexpr double kLeastGain = 1e-3;    ///< of a star's mean quality
 constexpr double kRegularHeight = 0.86602540378443865;
+constexpr double kGoal = 0.35;         ///< squared sine of 36 degrees: angles below it are lifted
+constexpr int kLiftPasses = 4, kLiftSteps = 10;
 constexpr double kMargin = 1e-9;       ///< flips back and forth are not flips
 constexpr double kFoldCosine = 0.35;   ///< least cosine between triangles that come and those that go
 constexpr int kFlipPasses = 6;
@@ -55,6 +58,44 @@ void ChartMesh::improve(int passes, const Context& context) {
     for (int k = 0; k < 2 && flip_all() > 0; ++k) context.check_limits();
   }
   for (int k = 0; k < kFlipPasses && flip_all() > 0; ++k) context.check_limits();
+  for (int k = 0; k < kLiftPasses && lift_angles() > 0; ++k) flip_all();
+}
+
+/// Corners of triangles with an angle under the goal are moved to where the worst angle round them is largest.
+std::size_t ChartMesh::lift_angles() {
+  std::size_t count = 0;
+  for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+    if (!is_inside(t)) continue;
+    const Triangle& s = c_.tri[t];
+    if (squared_sine(at_[s.node[0]], at_[s.node[1]], at_[s.node[2]]) > kGoal) continue;
+    for (const VertexIndex v : s.node)
+      if (v >= first_free_) count += lift_angle(v);
+  }
+  return count;
+}
+
+bool ChartMesh::lift_angle(VertexIndex v) {
+  if (!collect_star(c_, v, star_, vertices_)) return false;
+  ring_.clear();
+  double length2 = 0;
+  for (const VertexIndex w : vertices_) {
+    ring_.push_back(at_[w]);
+    length2 += squared_length(at_[w] - at_[v]) / double(vertices_.size());
+  }
+  bool is_better = false;
+  double reach = 0.25 * std::sqrt(length2);  // in space; halved where no direction helps
+  for (int k = 0; k < kLiftSteps; ++k) {
+    const Point area = cross(x_[v], y_[v]);
+    const Star before = measure(at_[v], area / length(area));
+    bool is_moved = false;
+    for (int d = 0; d < 8 && !is_moved; ++d) {
+      const double angle = d * std::numbers::pi / 4, s = reach / std::sqrt(length(area));
+      is_moved = try_place(v, {s * std::cos(angle), s * std::sin(angle)}, before, true);
+    }
+    is_better = is_better || is_moved;
+    if (!is_moved) reach *= 0.5;
+  }
+  return is_better;
 }
 
 std::size_t ChartMesh::flip_all() {
@@ -132,13 +173,15 @@ bool ChartMesh::move(VertexIndex v) {
   return try_place(v, {(g * dx - f * dy) / det, (e * dy - f * dx) / det}, before);
 }
 
-bool ChartMesh::try_place(VertexIndex v, Point2 step, const Star& before) {
+bool ChartMesh::try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst) {
   const Point2 start = c_.point[v];
   const Point2 to = start + step;
   const Chart::Place place = chart_.place(to);
   const Point area = cross(place.x, place.y);
   const Star after = measure(place.at, area / length(area));
-  if (after.mean < before.mean + kLeastGain || after.worst < std::min(before.worst, kSmoothAngle)) return false;
+  if (by_worst ? after.worst < before.worst + kLeastGain
+               : after.mean < before.mean + kLeastGain || after.worst < std::min(before.worst, kSmoothAngle))
+    return false;
   c_.point[v] = to;
   if (!is_positive()) {
     c_.point[v] = start;

@@ -28,7 +28,9 @@ class ChartMesh {
   std::size_t flip_all();
   bool flip(EdgeRef ref);
   bool move(VertexIndex v);
-  bool try_place(VertexIndex v, Point2 step, const Star& before);
+  std::size_t lift_angles();
+  bool lift_angle(VertexIndex v);
+  bool try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst = false);
   Star measure(Point p, Point normal) const;
   bool is_positive() const;
   bool is_inside(TriIndex t) const {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kLeastPanels = 32, kMostPanels = std::size_t(1) << 22;
 constexpr double kPanelsPerSide = 8;
-constexpr double kConverged = 1e-5;  ///< change of the integral, of itself
+constexpr double kConverged = 1e-4;  ///< change of the integral, of itself
 constexpr double kAlmost = 1e-9;     ///< below the half that is rounded up, so that equal curves get equal numbers
 
 /// 1/h times the speed at equal steps of t: what adds up to the number of sides.

@@ -57,7 +57,7 @@ void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions
 /// @brief Fill a face by the front on discrete surfaces, over a fine triangulation of it; new points are put on the
 /// face's surface.
 void grid_directly(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges,
-                   const WantedSize& size, const BrepOptions& options, FaceGrid& grid, Context& context);
+                   const WantedSize& size, FaceGrid& grid, Context& context);
 
 /// @brief Normals of triangles against those of the surface at their corners, and distances of middles.
 void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid);

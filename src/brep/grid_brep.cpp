@@ -91,7 +91,7 @@ class BrepGridder {
     const std::string why = grid.gave_up.empty() ? "asked for" : grid.gave_up;
     grid = border;
     grid.why_direct = why;
-    grid_directly(brep_, face, edges_, wanted_, options_, grid, context_);
+    grid_directly(brep_, face, edges_, wanted_, grid, context_);
     check_face_grid(face, most_angle, grid);
   }
 

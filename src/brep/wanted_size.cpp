@@ -5,7 +5,22 @@ namespace delfront {
 namespace {
 
 constexpr int kSamples = 24;        ///< each way
+constexpr double kTipReach = 0.2;    ///< of a face's extent from its tip: sizes there are not lowered below about that
 constexpr double kSmoothPole = 0.99;  ///< least cosine between normals round a pole that is no tip
+
+/// How far a face's border goes from a place.
+double reach_of(const Brep& brep, const BrepFace& face, Point from) {
+  double reach = 0;
+  for (const auto& loop : face.loops)
+    for (const BrepUse& use : loop) {
+      const auto& range = brep.edges[use.edge].range;
+      for (int i = 0; i <= kSamples; ++i) {
+        const Point2 uv = use.curve->at(range[0] + (range[1] - range[0]) * i / kSamples);
+        reach = std::max(reach, distance(from, face.surface->at(uv)));
+      }
+    }
+  return reach;
+}
 
 }  // namespace
 
@@ -19,7 +34,8 @@ void WantedSize::find_tips(const Brep& brep) {
         for (int i = 1; i <= kSamples; ++i) {
           const double t = edge.range[0] + (edge.range[1] - edge.range[0]) * i / kSamples;
           if (dot(first, face.surface->normal(use.curve->at(t))) > kSmoothPole) continue;
-          tips_.push_back(brep.corners[edge.corners[0]].at);
+          const Point at = brep.corners[edge.corners[0]].at;
+          tips_.push_back({at, kTipReach * reach_of(brep, face, at)});
           break;
         }
       }

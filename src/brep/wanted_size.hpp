@@ -24,7 +24,8 @@ class WantedSize {
   double lowered(double asked, double curvature, Point at) const {
     if (!(asked * curvature > most_turn_)) return asked;
     double allowed = most_turn_ / curvature;
-    for (const Point tip : tips_) allowed = std::max(allowed, kTipShare * distance(at, tip));
+    for (const Tip& tip : tips_)
+      allowed = std::max(allowed, kTipShare * std::max(distance(at, tip.at), std::min(kTipCells * asked, tip.least)));
     return std::min(asked, allowed);
   }
 
@@ -33,9 +34,14 @@ class WantedSize {
 
  private:
   static constexpr double kTipShare = 0.8;  ///< of the distance from a tip: allowed there at least
+  static constexpr double kTipCells = 0.6;  ///< of the asked size, as that distance
+  struct Tip {
+    Point at;
+    double least;  ///< a share of how far its face goes: no distance from it counts for less
+  };
   const SizeField& asked_;
   double most_turn_;
-  std::vector<Point> tips_;
+  std::vector<Tip> tips_;
 };
 
 }  // namespace delfront
