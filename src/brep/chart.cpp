@@ -12,6 +12,7 @@ constexpr int kPieces = 256, kAcross = 9;  ///< of tables; samples across for me
 constexpr double kAlmostStraight = 1.01;   ///< ratio of slopes
 constexpr double kMostTurn = 1.9 * std::numbers::pi;
 constexpr double kLeastAround = 1e-3;  ///< of the widest: another pole at the far end
+constexpr double kLeastUnrolled = 0.8 * std::numbers::pi;  ///< less has no room for three triangles at the tip
 constexpr double kFullTurn = 1 - 1e-9;  ///< of a period
 
 }  // namespace
@@ -96,7 +97,9 @@ void Chart::make_polar(const ParameterBox& box) {
     }
   const double most = *std::max_element(around.begin(), around.end());
   for (std::size_t i = 1; i < around.size(); ++i) around[i] = std::max(around[i], kLeastAround * most);
-  const bool is_full = period > 0 && a1 - a0 >= kFullTurn * period;
+  // a cone that is not too sharp is unrolled: its seam is on two sides then
+  const bool is_full =
+      period > 0 && a1 - a0 >= kFullTurn * period && !(turn >= kLeastUnrolled && turn <= kMostTurn);
   const double rate = is_full ? 2 * std::numbers::pi / period : (turn > 0 ? std::min(turn, kMostTurn) : 1) / (a1 - a0);
   angle_ = (by_v == low ? -1 : 1) * rate;
   // d ln radius = k ds / r, with r the mean radius in space, s the length from the pole and k = dr / ds there

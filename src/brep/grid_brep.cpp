@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "brep/assemble_brep.hpp"
 #include "brep/edge_points.hpp"
+#include "brep/face_mesh.hpp"
 #include "delfront/errors.hpp"
 #include "geometry/surface_findings.hpp"
 #include "surface/working_size.hpp"
@@ -82,9 +83,11 @@ class BrepGridder {
     const double most_angle = options_.normal_angle_deg * kDegree;
     FaceGrid& grid = grids_[f];
     const FaceGrid border = make_face_border(brep_, face, edges_);
+    const std::vector<std::uint64_t> kept_sides = kept_sides_of(border);
     grid = border;
     if (options_.method != BrepOptions::Method::direct) {
       grid_mapped(face, wanted_, options_, grid, context_);
+      lift_small_angles(*face.surface, kept_sides, grid);
       check_face_grid(face, most_angle, grid);
       if (grid.gave_up.empty() || options_.method == BrepOptions::Method::mapped) return;
     }
@@ -92,6 +95,7 @@ class BrepGridder {
     grid = border;
     grid.why_direct = why;
     grid_directly(brep_, face, edges_, wanted_, grid, context_);
+    lift_small_angles(*face.surface, kept_sides, grid);
     check_face_grid(face, most_angle, grid);
   }
 
