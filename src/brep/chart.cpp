@@ -12,7 +12,7 @@ constexpr int kPieces = 256, kAcross = 9;  ///< of tables; samples across for me
 constexpr double kAlmostStraight = 1.01;   ///< ratio of slopes
 constexpr double kMostTurn = 1.9 * std::numbers::pi;
 constexpr double kLeastAround = 1e-3;  ///< of the widest: another pole at the far end
-constexpr double kLeastUnrolled = 0.8 * std::numbers::pi;  ///< less has no room for three triangles at the tip
+constexpr double kLeastUnrolled = 1.3 * std::numbers::pi;  ///< with less, few triangles at the tip turn by too much
 constexpr double kFullTurn = 1 - 1e-9;  ///< of a period
 
 }  // namespace

@@ -12,6 +12,7 @@ constexpr double kGoal = 0.345;     ///< squared sine of 36 degrees
 constexpr int kRounds = 4, kSweeps = 4, kMoves = 8, kDirections = 8;
 constexpr double kLeastGain = 1e-3;  ///< of a squared sine
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
+constexpr double kAgree = 0.3;       ///< least cosine between triangles and the surface at their corners
 constexpr double kMostLonger = 1.3;  ///< sides that a collapse makes, of the longest there
 constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -117,6 +118,16 @@ class SmallAngles {
 
   bool is_small(std::uint32_t t) const { return triangles_[t][0] != kNone && sine(triangles_[t]) <= kGoal; }
 
+  /// Whether a triangle faces as the surface does at its corners, but for poles.
+  bool agrees(const std::array<std::uint32_t, 3>& t) const {
+    const Point area = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+    for (const std::uint32_t p : t) {
+      const FacePoint& point = grid_.points[p];
+      if (!point.is_pole && !(dot(area, surface_.normal(point.uv)) > kAgree * length(area))) return false;
+    }
+    return true;
+  }
+
   std::size_t work() {
     std::size_t done = 0;
     const auto n = static_cast<std::uint32_t>(triangles_.size());
@@ -171,6 +182,7 @@ class SmallAngles {
       const Point area = cross(at(a) - at(q), at(b) - at(q));
       if (!(dot(area, normal) > kFoldCosine * length(area))) return false;
       after_worst = std::min(after_worst, sine({q, a, b}));
+      if (!agrees({q, a, b})) return false;
     }
     if (after_worst < before_worst + kLeastGain) return false;
     for (std::size_t k = 0; k < n; ++k) {
@@ -249,6 +261,7 @@ class SmallAngles {
     if (!(dot(first, old) > kFoldCosine * length(old) * length(first)) ||
         !(dot(second, old) > kFoldCosine * length(old) * length(second)))
       return false;
+    if (!agrees({a, d, c}) || !agrees({d, b, c})) return false;
     const std::uint32_t free = grid_.points[c].vertex == kNoVertex ? c : d;
     if (!ring(free) || std::find(ring_.begin(), ring_.end(), free == c ? d : c) != ring_.end()) return false;
     const std::uint32_t t = side / 3, w = other / 3;
@@ -274,10 +287,13 @@ class SmallAngles {
   }
 
   double worst_of_ring(Point place, Point normal) const {
-    double worst = 1;
+    double worst = 1;  // with normals of the ring's points: those at poles are nothing
     for (std::size_t i = 0; i < ring_.size(); ++i) {
       const Point a = at(ring_[i]), b = at(ring_[(i + 1) % ring_.size()]), n = cross(a - place, b - place);
-      if (!(dot(n, normal) > kFoldCosine * length(n))) return 0;
+      const double least = kAgree * length(n);
+      if (!(dot(n, normal) > least)) return 0;
+      for (const Point there : {ring_normal_[i], ring_normal_[(i + 1) % ring_.size()]})
+        if (!(dot(n, there) > least) && there != Point{}) return 0;
       worst = std::min(worst, squared_sine(place, a, b));
     }
     return worst;
@@ -290,6 +306,11 @@ class SmallAngles {
     double reach = 0;
     for (const std::uint32_t q : ring_) reach += 0.25 * distance(at(q), moved.at) / double(ring_.size());
     Point normal = surface_.normal(moved.uv);
+    ring_normal_.clear();
+    for (const std::uint32_t q : ring_) {
+      const FacePoint& point = grid_.points[q];
+      ring_normal_.push_back(point.is_pole ? Point{} : surface_.normal(point.uv));
+    }
     double worst = worst_of_ring(moved.at, normal);
     bool is_better = false;
     for (int k = 0; k < kMoves; ++k) {
@@ -323,6 +344,7 @@ class SmallAngles {
   std::vector<std::uint8_t> mark_;      ///< by point: 1 to 3, outwards from small angles; 3 is the rim
   bool is_collapsed_ = false;
   std::vector<std::uint32_t> ring_, fan_, touched_;
+  std::vector<Point> ring_normal_;
 };
 
 }  // namespace

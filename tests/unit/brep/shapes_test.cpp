@@ -183,13 +183,13 @@ TEST(Chart, PolarOfASphereIsConformalAndThereAndBackIsTheSame) {
 }
 
 TEST(Chart, ConesAreUnrolledUnlessTheyAreSharp) {
-  for (const double half : {kPi / 6, kPi / 3, kPi / 10}) {
+  for (const double half : {kPi / 6, kPi / 3, kPi / 4}) {
     const SurfacePointer cone = make_cone_surface({}, half);
     const Chart chart(*cone, {{0, 0}, {2 * kPi, 3}}, Chart::Pole::v_low);
     for (const double v : {0.01, 0.5, 2.0}) {
       const Point2 xy = chart.to_chart({1, v});
       EXPECT_NEAR(std::hypot(xy.x, xy.y), v, 1e-3 * v);
-      const double stretch = half < kPi / 8 ? 1 / std::sin(half) : 1;
+      const double stretch = half < kPi / 5 ? 1 / std::sin(half) : 1;
       EXPECT_NEAR(Chart::stretch(chart.place(xy)), stretch, 0.02 * stretch);
     }
   }
