@@ -18,6 +18,7 @@ constexpr double kGoal = 0.35;         ///< squared sine of 36 degrees: angles b
 constexpr int kLiftPasses = 4, kLiftSteps = 10;
 constexpr double kMargin = 1e-9;       ///< flips back and forth are not flips
 constexpr double kFoldCosine = 0.35;   ///< least cosine between triangles that come and those that go
+constexpr double kAgree = 0.5;         ///< cosine between triangles and the surface at their corners: less is not made of more
 constexpr int kFlipPasses = 6;
 constexpr std::size_t kVerticesPerCancelCheck = 1 << 14;
 
@@ -37,9 +38,9 @@ ChartMesh::ChartMesh(TriComplex& complex, const Chart& chart, std::vector<Point>
   at_.resize(n);
   x_.resize(n);
   y_.resize(n);
-  for (VertexIndex v = first_free_; v < n; ++v) {
+  for (VertexIndex v = 0; v < n; ++v) {
     const Chart::Place place = chart_.place(c_.point[v]);
-    at_[v] = place.at;
+    if (v >= first_free_) at_[v] = place.at;
     x_[v] = place.x;
     y_[v] = place.y;
   }
@@ -108,6 +109,17 @@ std::size_t ChartMesh::flip_all() {
   return count;
 }
 
+/// The least cosine between a triangle and the surface at its corners, but for a pole.
+double ChartMesh::agreement(Point area, const std::array<VertexIndex, 3>& corners) const {
+  double least = 1;
+  for (const VertexIndex v : corners) {
+    if (chart_.is_polar() && c_.point[v] == Point2{0, 0}) continue;
+    const Point n = cross(x_[v], y_[v]);
+    least = std::min(least, dot(area, n) / std::sqrt(squared_length(area) * squared_length(n)));
+  }
+  return least;
+}
+
 /// Edge a b of triangles a b c and b a d becomes c d where the sum of the angles at c and d is over 180 degrees.
 bool ChartMesh::flip(EdgeRef ref) {
   const EdgeRef other = c_.across(ref);
@@ -120,11 +132,15 @@ bool ChartMesh::flip(EdgeRef ref) {
   const double sin_c = length(cross(u, v)), sin_d = length(cross(x, y));
   if (sin_c * cos_d + cos_c * sin_d >= -kMargin * (std::abs(sin_c * cos_d) + std::abs(cos_c * sin_d))) return false;
   if (c < first_free_ && d < first_free_ && (a >= first_free_ || b >= first_free_)) return false;
-  const Point old = cross(pb - pa, pc - pa) + cross(pa - pb, pd - pb);
+  const Point old_first = cross(pb - pa, pc - pa), old_second = cross(pa - pb, pd - pb), old = old_first + old_second;
   const Point first = cross(pd - pa, pc - pa), second = cross(pb - pd, pc - pd);
   const double size = length(old);
   if (!(dot(first, old) > kFoldCosine * size * length(first)) ||
       !(dot(second, old) > kFoldCosine * size * length(second)))
+    return false;
+  const double then = std::min(agreement(first, {a, d, c}), agreement(second, {d, b, c}));
+  if (!(then > kAgree) &&
+      !(then > std::min(agreement(old_first, {a, b, c}), agreement(old_second, {b, a, d})) && then > 0))
     return false;
   if (orient2d(c_.point[a], c_.point[d], c_.point[c]) <= 0 || orient2d(c_.point[d], c_.point[b], c_.point[c]) <= 0)
     return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <vector>
 
 #include "brep/chart.hpp"
@@ -27,6 +28,7 @@ class ChartMesh {
   };
   std::size_t flip_all();
   bool flip(EdgeRef ref);
+  double agreement(Point area, const std::array<VertexIndex, 3>& corners) const;
   bool move(VertexIndex v);
   std::size_t lift_angles();
   bool lift_angle(VertexIndex v);

@@ -11,6 +11,8 @@ namespace {
 
 using Pole = Chart::Pole;
 
+constexpr double kRoom = 0.7;  ///< between a cut and other loops, of two sides of the loop there
+
 /// Two points of a loop, one after the other, that are one pole in space.
 struct PoleRun {
   std::size_t loop, first;
@@ -74,6 +76,33 @@ double radial(const FaceGrid& grid, std::uint32_t p, Pole side) {
   return side == Pole::v_low || side == Pole::v_high ? uv.y : uv.x;
 }
 
+/// The point of a way from pole to pole whose level is the nearest to the middle of those that meet no other loop.
+std::size_t find_level(const FaceGrid& grid, const std::vector<std::uint32_t>& way, Pole side, std::size_t loop) {
+  std::vector<std::array<double, 2>> others;
+  for (std::size_t l = 0; l < grid.loops.size(); ++l) {
+    if (l == loop) continue;
+    std::array<double, 2> range = {1e300, -1e300};
+    for (const std::uint32_t p : grid.loops[l])
+      range = {std::min(range[0], radial(grid, p, side)), std::max(range[1], radial(grid, p, side))};
+    others.push_back(range);
+  }
+  const std::size_t middle = way.size() / 2;
+  std::size_t best = middle;
+  double best_merit = -1e300;
+  for (std::size_t i = 1; i + 1 < way.size(); ++i) {
+    const double here = radial(grid, way[i], side);
+    const double step = std::abs(radial(grid, way[i + 1], side) - radial(grid, way[i - 1], side));
+    double room = kRoom * step;
+    for (const auto& range : others) room = std::min(room, std::max(range[0] - here, here - range[1]));
+    const double off = std::abs(double(i) - double(middle)) / double(way.size());
+    const double merit = (room >= kRoom * step ? 1 : room / (kRoom * step)) - off;
+    if (merit <= best_merit) continue;
+    best_merit = merit;
+    best = i;
+  }
+  return best;
+}
+
 std::vector<FacePart> cut(const BrepFace& face, const WantedSize& size, FaceGrid& grid, const PoleRun& a,
                           const PoleRun& b) {
   const auto& loop = grid.loops[a.loop];
@@ -84,7 +113,7 @@ std::vector<FacePart> cut(const BrepFace& face, const WantedSize& size, FaceGrid
     grid.fail("the way from pole to pole has no point between", grid.points[loop[a.first]].at);
     return {};
   }
-  const std::size_t i = there.size() / 2;
+  const std::size_t i = find_level(grid, there, a.side, a.loop);
   const double level = radial(grid, there[i], a.side);
   std::size_t j = 1;
   for (std::size_t k = 2; k + 1 < back.size(); ++k)

@@ -18,6 +18,8 @@ constexpr double kTurnPerCell = 4 * std::numbers::pi / 180;  ///< of normals, al
 constexpr int kLeastCells = 24, kMostCells = 300;
 constexpr int kSamples = 32;
 constexpr double kOffset = 0.4371;  ///< of a cell: no line of the lattice is one of the border's
+constexpr double kFlat = 1e-4;      ///< of the squared longest side: areas that are none
+constexpr int kMostFlips = 20;
 constexpr double kRoom = 0.3;       ///< of a cell: between points of the lattice and of the border
 
 class SupportMaker {
@@ -137,6 +139,37 @@ class SupportMaker {
     return vertex_[v];
   }
 
+  /// Triangles from a pole to two places on one line to it have an area in the plane and none in space: the side from
+  /// the pole to the farther place is flipped.
+  void flip_flat(TriComplex& c) {
+    for (int pass = 0, count = 1; pass < kMostFlips && count > 0; ++pass) {
+      count = 0;
+      for (TriIndex t = 0; t < c.tri.size(); ++t) {
+        if (c.is_dead(t) || c.is_ghost(t) || c.tri[t].region == kOutside) continue;
+        const VertexIndex* n = c.tri[t].node;
+        const Point p[3] = {place_of(n[0]), place_of(n[1]), place_of(n[2])};
+        unsigned longest = 0;  // opposite the corner of the same number
+        double squared[3];
+        for (unsigned e = 0; e < 3; ++e) squared[e] = squared_length(p[next_of(e)] - p[previous_of(e)]);
+        for (unsigned e = 1; e < 3; ++e)
+          if (squared[e] > squared[longest]) longest = e;
+        if (std::min({squared[0], squared[1], squared[2]}) == 0) continue;
+        if (length(cross(p[1] - p[0], p[2] - p[0])) > kFlat * squared[longest]) continue;
+        const EdgeRef ref = 4 * t + longest, other = c.across(ref);
+        if (c.is_constrained(ref) || c.is_ghost(other >> 2)) continue;
+        const Point2 a = c.point[c.origin(ref)], b = c.point[c.target(ref)], q = c.point[c.apex(ref)],
+                     d = c.point[c.apex(other)];
+        if (orient2d(a, d, q) <= 0 || orient2d(d, b, q) <= 0) continue;
+        c.flip(ref);
+        ++count;
+      }
+    }
+  }
+
+  Point place_of(VertexIndex v) const {
+    return vertex_[v].is_valid() ? support_.model.points[vertex_[v]] : face_.surface->at(uv_[v]);
+  }
+
   void triangulate(Context& context) {
     PlanarGrid plane;
     TriComplex& c = plane.complex;
@@ -147,6 +180,7 @@ class SupportMaker {
     for (const auto& [v, first] : build_delaunay(c, kernel, context)) same_as[v] = first;
     insert_segments(domain_, same_as, plane, context);
     colour_regions(domain_, DomainOptions{}, plane);
+    flip_flat(c);
     Model& m = support_.model;
     for (TriIndex t = 0; t < c.tri.size(); ++t) {
       if (c.is_dead(t) || c.is_ghost(t) || c.tri[t].region == kOutside) continue;

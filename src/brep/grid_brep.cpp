@@ -56,26 +56,37 @@ class BrepGridder {
   }
 
  private:
-  /// F3, and sizes that grow from where edges are divided more finely than asked for.
+  /// F3, twice: from sides that are shorter than asked for, sizes grow.
   void divide() {
     working_.lower(lowered_, context_);
     edges_ = divide_edges(brep_, wanted_, num_vertices_, context_);
+    const BoundarySizes sizes = find_short_sides();
+    if (sizes.points.size() == lowered_.points.size()) return;
+    working_.lower(sizes, context_);
+    edges_ = divide_edges(brep_, wanted_, num_vertices_, context_);
+  }
+
+  /// Beside the places where sizes are lowered already.
+  BoundarySizes find_short_sides() {
     std::vector<Point> at;
-    std::vector<double> least;
-    for (const EdgePoints& points : edges_)
-      for (std::size_t i = 0; i + 1 < points.t.size() && points.vertex[0] != points.vertex[1]; ++i) {
+    std::vector<double> side;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (brep_.edges[EdgeId(e)].is_degenerate()) continue;
+      const EdgePoints& points = edges_[EdgeId(e)];
+      for (std::size_t i = 0; i + 1 < points.t.size(); ++i) {
         at.push_back(0.5 * (points.at[i] + points.at[i + 1]));
-        least.push_back(distance(points.at[i], points.at[i + 1]));
+        side.push_back(distance(points.at[i], points.at[i + 1]));
       }
+    }
     std::vector<double> asked(at.size());
     evaluate_sizes(working_, at, asked, context_);
     BoundarySizes sizes = lowered_;
     for (std::size_t i = 0; i < at.size(); ++i) {
-      if (!(least[i] < kShortShare * asked[i])) continue;
+      if (!(side[i] < kShortShare * asked[i])) continue;
       sizes.points.push_back(at[i]);
-      sizes.size.push_back(least[i]);
+      sizes.size.push_back(side[i]);
     }
-    working_.lower(sizes, context_);
+    return sizes;
   }
 
   void grid_face(FaceId f) {

@@ -17,7 +17,7 @@
 namespace delfront {
 namespace {
 
-constexpr double kMostStretch = 12;     ///< of lengths over directions, in a chart that is used
+constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
 constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
 constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
 constexpr int kSamples = 17;            ///< each way, to look at a chart
