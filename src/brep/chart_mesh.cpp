@@ -45,6 +45,7 @@ ChartMesh::ChartMesh(TriComplex& complex, const Chart& chart, std::vector<Point>
     y_[v] = place.y;
   }
   is_calm_.assign(n, false);
+  is_changed_.assign(n, 1);
 }
 
 void ChartMesh::improve(int passes, const Context& context) {
@@ -99,12 +100,17 @@ bool ChartMesh::lift_angle(VertexIndex v) {
   return is_better;
 }
 
+/// Sides of triangles of which a corner has moved, or got or lost a side, since the last time.
 std::size_t ChartMesh::flip_all() {
+  const std::vector<std::uint8_t> is_due = is_changed_;
+  std::fill(is_changed_.begin(), is_changed_.end(), 0);
   std::size_t count = 0;
   for (TriIndex t = 0; t < c_.tri.size(); ++t) {
     if (!is_inside(t)) continue;
+    const VertexIndex* n = c_.tri[t].node;
+    if (!is_due[n[0]] && !is_due[n[1]] && !is_due[n[2]]) continue;
     for (unsigned e = 0; e < 3; ++e)
-      if (c_.tri[t].neigh[e] > 4 * t + e && !c_.is_constrained(4 * t + e)) count += flip(4 * t + e);
+      if (!c_.is_constrained(4 * t + e)) count += flip(4 * t + e);
   }
   return count;
 }
@@ -148,7 +154,10 @@ bool ChartMesh::flip(EdgeRef ref) {
   const TriIndex t = ref >> 2, w = other >> 2;
   c_.vertex_tri[a] = c_.vertex_tri[c] = c_.vertex_tri[d] = t;
   c_.vertex_tri[b] = w;
-  for (const VertexIndex k : {a, b, c, d}) is_calm_[k] = false;
+  for (const VertexIndex k : {a, b, c, d}) {
+    is_calm_[k] = false;
+    is_changed_[k] = 1;
+  }
   return true;
 }
 
@@ -206,6 +215,7 @@ bool ChartMesh::try_place(VertexIndex v, Point2 step, const Star& before, bool b
   at_[v] = place.at;
   x_[v] = place.x;
   y_[v] = place.y;
+  is_changed_[v] = 1;
   for (const TriIndex t : star_)
     for (const VertexIndex w : c_.tri[t].node) is_calm_[w] = false;
   return true;

@@ -44,6 +44,7 @@ class ChartMesh {
   VertexIndex first_free_;
   std::vector<Point> at_, x_, y_;  ///< by vertex: place and tangents along the chart's axes
   std::vector<bool> is_calm_;      ///< by vertex: regular, and nothing has moved there since
+  std::vector<std::uint8_t> is_changed_;  ///< by vertex: its sides are to be looked at
   std::vector<TriIndex> star_;
   std::vector<VertexIndex> vertices_;
   std::vector<Point> ring_;
