@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <unordered_map>
 
@@ -17,11 +18,11 @@
 namespace delfront {
 namespace {
 
-constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
-constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
-constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
-constexpr int kSamples = 17;            ///< each way, to look at a chart
-constexpr double kSamePlace = 1e-9;     ///< of the extent: copies of a seam's points in a polar chart
+constexpr double kMostStretch = 25;  ///< of lengths over directions, in a chart that is used
+constexpr double kMostChange = 3;    ///< of lengths in space over one wanted side, in a chart that is used
+constexpr double kTryPolar = 2.5;    ///< stretch of a linear chart from where a polar one is tried
+constexpr int kSamples = 17;         ///< each way, to look at a chart
+constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
 constexpr int kPoleDirections = 8;
 
 /// What a chart asks of lengths in it: M = J^T J / h^2.
@@ -55,8 +56,7 @@ class ChartMetric : public SizeField {
 
  private:
   Metric metric_of(const Chart::Place& place, double h) const {
-    if (is_lowered_)
-      h = size_.lowered(h, largest_curvature(chart_.surface().derivatives(place.uv)), place.at);
+    if (is_lowered_) h = size_.lowered(h, largest_curvature(chart_.surface().derivatives(place.uv)), place.at);
     const double f = 1 / (h * h);
     Metric m;
     m.xx = f * dot(place.x, place.x);
@@ -68,7 +68,7 @@ class ChartMetric : public SizeField {
   Metric metric_at_pole(double h) const {
     double sum = 0;
     for (int k = 0; k < kPoleDirections; ++k) {
-      const double angle = k * 2 * M_PI / kPoleDirections;
+      const double angle = k * 2 * std::numbers::pi / kPoleDirections;
       const Metric m = metric_of(chart_.place({2 * origin_ * std::cos(angle), 2 * origin_ * std::sin(angle)}), h);
       sum += 0.5 * (m.xx + m.yy) / kPoleDirections;
     }
@@ -106,7 +106,9 @@ ChartLook look_at(const Chart& chart, const ParameterBox& box, const WantedSize&
         look.at = place.at;
       }
       // one wanted side on, but no farther than the part goes
-      const double here = scale(place), h = size.asked().size(place.at);
+      const double here = scale(place);
+      const double h =
+          size.lowered(size.asked().size(place.at), largest_curvature(chart.surface().derivatives(place.uv)), place.at);
       for (int k = 0; k < 4; ++k) {
         const double ahead = (k % 2 ? -1 : 1) * h / std::max(length(k < 2 ? place.x : place.y), 1e-300);
         const Point2 to = chart.to_uv(k < 2 ? Point2{xy.x + ahead, xy.y} : Point2{xy.x, xy.y + ahead});
@@ -157,11 +159,9 @@ class ChartedPart {
  public:
   ChartedPart(const FacePart& part, const Chart& chart, FaceGrid& grid) : chart_(chart), grid_(grid) {
     domain_.curves.push_back({});
-    for (const auto& loop : part.loops) {
-      if (part.loops.empty()) continue;
+    for (const auto& loop : part.loops)
       for (std::size_t i = 0; i < loop.size(); ++i)
         add_segment(chart_point(loop[i]), chart_point(loop[(i + 1) % loop.size()]));
-    }
   }
 
   void fill(const WantedSize& size, bool is_lowered, const BrepOptions& options, Context& context) {

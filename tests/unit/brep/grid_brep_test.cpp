@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "brep_fixtures.hpp"
-
 #include "delfront/errors.hpp"
 #include "support/errors.hpp"
 
