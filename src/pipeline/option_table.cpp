@@ -175,7 +175,7 @@ std::vector<OptionRow> build_table() {
                [](auto& o) -> auto& { return o.planar.boundary; }, {"keep", "split"}));
   add(text_row(
       "planar.method", "--planar-method", "front-delaunay|front|delaunay",
-      "how the plane is gridded: by an advancing front; by the points of a front, connected by Delaunay; or by "
+      "how the plane is gridded: by the points of a front, connected by Delaunay; by an advancing front; or by "
       "Delaunay with points at the centres of circles",
       [](auto& o) -> auto& { return o.planar.method; }, {"front-delaunay", "front", "delaunay"}));
   add(number_row(

@@ -178,7 +178,7 @@ void refuse_tiny_hmax(double volume, const Options& options, const Context& cont
   if (cells < kSurelyOver * limit) return;
   throw LimitError(fmt::format(
       "stopped before gridding: cells no larger than hmax, {:.4g}, are at least {:.1e} up to the far field, over the "
-      "limit of {}{}; ask for a larger hmax (it holds everywhere; sizes near the body have keys of their own)",
+      "limit of {}{}; ask for a larger hmax: it holds everywhere, sizes near the body have keys of their own",
       options.size.hmax->value, cells, limit,
       context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
