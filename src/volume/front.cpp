@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
+#include <cstdio>
 #include <cmath>
 #include <cstdint>
 
@@ -16,6 +18,7 @@
 #include "base/parallel.hpp"
 #include "delfront/errors.hpp"
 #include "volume/front_closing.hpp"
+#include "volume/front_stars.hpp"
 #include "volume/front_step.hpp"
 
 namespace delfront {
@@ -93,12 +96,16 @@ class Front {
     for (const FrontSettings& settings : kSweeps) sweep(settings);
     report_.sides_left = waiting_.size();
     std::vector<std::uint32_t> left = fill_cavities(front_, waiting_, report_, context_);
+    dump(left, "first");
+    if (!getenv("OLD")) left = fill_by_stars(front_, left, report_, context_);
     for (int again = 0; again < kSweepsAgain && !left.empty(); ++again) {
       report_.cavities_left = 0;
       live_ = waiting_ = empty_around(front_, left, report_);
       for (const FrontSettings& settings : kSweeps) sweep(settings);
       left = fill_cavities(front_, waiting_, report_, context_);
+      if (!getenv("OLD")) left = fill_by_stars(front_, left, report_, context_);
     }
+    dump(left, "end");
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     front_.join();
     fill_report();
@@ -106,6 +113,19 @@ class Front {
   }
 
  private:
+  void dump(const std::vector<std::uint32_t>& left, const char* name) {
+    const char* at = std::getenv("DUMP");
+    if (!at) return;
+    FILE* o = std::fopen((std::string(at) + name).c_str(), "w");
+    for (const std::uint32_t f : left) {
+      if (!front_.face(f).is_alive) continue;
+      const auto n = front_.nodes(f);
+      std::fprintf(o, "%d %g", (int)front_.face(f).is_boundary, front_.face(f).size);
+      for (auto v : n) std::fprintf(o, " %u %.17g %.17g %.17g", v, c_.point(v).x, c_.point(v).y, c_.point(v).z);
+      std::fprintf(o, "\n");
+    }
+    std::fclose(o);
+  }
   void sweep(const FrontSettings& settings) {
     if (waiting_.empty()) return;
     settings_ = &settings;

@@ -10,7 +10,6 @@
 #include "delfront/errors.hpp"
 #include "spatial/box_octree.hpp"
 #include "tetra/quality.hpp"
-#include "volume/deepest_point.hpp"
 #include "volume/recover.hpp"
 
 namespace delfront {
@@ -138,35 +137,15 @@ class CavityFiller {
     }
   }
 
-  /// Uphill in the worst quality: from the mean of the corners, or from within the kernel where that does not find it.
+  /// Uphill in the worst quality, from the mean of the corners.
   Point find_point() {
-    double q = 0;
-    const Point p = climb_from(mean_of_corners(), q);
-    if (q > 0) return p;
-    planes_.clear();
-    for (const std::uint32_t f : faces_) planes_.push_back(half_space(f));
-    const DeepestPoint deepest = find_deepest_point(planes_);
-    return deepest.depth > 0 ? climb_from(deepest.at, q) : p;
-  }
-
-  HalfSpace half_space(std::uint32_t f) const {
-    const auto n = front_.nodes(f);
-    const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
-    return {a, cross(b - a, c - a)};
-  }
-
-  Point mean_of_corners() const {
     Point p;
+    double extent = 0;
     for (const std::uint32_t f : faces_)
       for (const VertexIndex v : front_.nodes(f)) p = p + c_.point(v);
-    return (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
-  }
-
-  Point climb_from(Point p, double& best) const {
-    double extent = 0;
+    p = (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
     for (const std::uint32_t f : faces_) extent = std::max(extent, distance(c_.point(front_.nodes(f)[0]), p));
-    double step = 0.25 * extent;
-    best = batch_.worst(p);
+    double best = batch_.worst(p), step = 0.25 * extent;
     for (int k = 0; k < kHalvings; ++k) {
       bool moved = false;
       for (int axis = 0; axis < 3; ++axis)
@@ -284,7 +263,6 @@ class CavityFiller {
   std::vector<Emptied> emptied_;  ///< tets, in order
   FaceBatch batch_;
   std::vector<double> quality_;
-  std::vector<HalfSpace> planes_;
 };
 
 }  // namespace
