@@ -9,8 +9,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
-#include <cstdio>
 #include <cmath>
 #include <cstdint>
 
@@ -37,7 +35,7 @@ constexpr std::size_t kFacesPerSlab = 1000, kMostSlabs = 64;
 constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may leave to the next cuts, about
 constexpr double kWorthSlabs = 0.02;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
-constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
+constexpr int kSweepsAgain = 4;  ///< times that a ring round what is left is emptied and all sweeps are made
 constexpr std::size_t kFew = 3;   ///< times so many faces in the front as there are to do: only those near are searched
 constexpr int kPhases = 4;        ///< three axes, then one piece
 
@@ -96,16 +94,13 @@ class Front {
     for (const FrontSettings& settings : kSweeps) sweep(settings);
     report_.sides_left = waiting_.size();
     std::vector<std::uint32_t> left = fill_cavities(front_, waiting_, report_, context_);
-    dump(left, "first");
-    if (!getenv("OLD")) left = fill_by_stars(front_, left, report_, context_);
+    left = fill_by_stars(front_, left, report_, context_);
     for (int again = 0; again < kSweepsAgain && !left.empty(); ++again) {
-      report_.cavities_left = 0;
       live_ = waiting_ = empty_around(front_, left, report_);
       for (const FrontSettings& settings : kSweeps) sweep(settings);
       left = fill_cavities(front_, waiting_, report_, context_);
-      if (!getenv("OLD")) left = fill_by_stars(front_, left, report_, context_);
+      left = fill_by_stars(front_, left, report_, context_);
     }
-    dump(left, "end");
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     front_.join();
     fill_report();
@@ -113,19 +108,6 @@ class Front {
   }
 
  private:
-  void dump(const std::vector<std::uint32_t>& left, const char* name) {
-    const char* at = std::getenv("DUMP");
-    if (!at) return;
-    FILE* o = std::fopen((std::string(at) + name).c_str(), "w");
-    for (const std::uint32_t f : left) {
-      if (!front_.face(f).is_alive) continue;
-      const auto n = front_.nodes(f);
-      std::fprintf(o, "%d %g", (int)front_.face(f).is_boundary, front_.face(f).size);
-      for (auto v : n) std::fprintf(o, " %u %.17g %.17g %.17g", v, c_.point(v).x, c_.point(v).y, c_.point(v).z);
-      std::fprintf(o, "\n");
-    }
-    std::fclose(o);
-  }
   void sweep(const FrontSettings& settings) {
     if (waiting_.empty()) return;
     settings_ = &settings;

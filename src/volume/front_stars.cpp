@@ -19,7 +19,10 @@ namespace delfront {
 namespace {
 
 constexpr double kFloors[] = {0, 1e-7, 1e-4, 0.01};  ///< least squared sines of dihedral angles, asked for last first
-constexpr std::size_t kMostFaces = 240;
+constexpr std::size_t kMostFaces = 240;  ///< of a cavity
+constexpr double kMostWork = 2e8;        ///< pairs of faces looked at for a cavity, over all places
+constexpr double kFarthest = 4;          ///< a place from the middle of a face, in its longest edges
+constexpr std::uint64_t kLeft = ~std::uint64_t{0};  ///< stamp of faces of cavities that came to no end
 constexpr double kAlongRay[] = {0.5, 0.15};  ///< places between a face and what lies opposite
 constexpr std::size_t kPartners = 4;         ///< edges that are looked at from each edge
 
@@ -48,9 +51,13 @@ class StarFiller {
 
   std::vector<std::uint32_t> all;  ///< faces of the front; some that were
 
+  bool is_left(std::uint32_t f) const { return front_.face(f).stamp == kLeft; }
+
+  /// @return whether the cavity that has face f is filled
   bool fill(std::uint32_t f) {
     const auto first = front_.nodes(f);
-    for (num_floors_ = std::size(kFloors); num_floors_ > 0; --num_floors_) {
+    work_ = 0;
+    for (num_floors_ = std::size(kFloors); num_floors_ > 0 && work_ < kMostWork; --num_floors_) {
       tets_.clear();
       if (try_fill(front_.find(first))) {
         report_.cells_refilled += tets_.size();
@@ -59,10 +66,9 @@ class StarFiller {
       take_back();
     }
     collect(front_.find(first));
+    for (const std::uint32_t g : cavity_) front_.face(g).stamp = kLeft;
     return false;
   }
-
-  const std::vector<std::uint32_t>& cavity() const { return cavity_; }
 
  private:
   bool try_fill(std::uint32_t f) {
@@ -71,14 +77,12 @@ class StarFiller {
     const std::size_t most = 2 * cavity_.size() + 20;
     std::size_t idle = 0;
     for (std::size_t step = 0; !cavity_.empty(); ++step) {
-      if (step > most || cavity_.size() > kMostFaces) return false;
+      if (step > most || cavity_.size() > kMostFaces || work_ > kMostWork) return false;
       context_.check_limits();
       find_places();
       look();
       const Star star = choose();
-      if (star.place == kNoIndex) return false;
-      if (star.gain <= 0 && ++idle > most / 3) return false;
-      if (getenv("TRACE")) fprintf(stderr, "  floors %zu step %zu faces %zu places %zu: gain %d, %zu tets, worst %g %s\n", num_floors_, step, cavity_.size(), places_.size(), star.gain, star.faces.size(), star.worst, places_[star.place].vertex == kNoIndex ? "new" : "");
+      if (star.place == kNoIndex || (star.gain <= 0 && ++idle > most / 3)) return false;
       add(star);
     }
     return true;
@@ -87,13 +91,16 @@ class StarFiller {
   /// The faces that hang together with f by edges.
   void collect(std::uint32_t f) {
     cavity_.assign(1, f);
-    for (std::size_t i = 0; i < cavity_.size() && cavity_.size() <= kMostFaces; ++i) {
+    front_.face(f).stamp = ++stamp_;
+    for (std::size_t i = 0; i < cavity_.size(); ++i) {
       const auto n = front_.nodes(cavity_[i]);
       for (unsigned k = 0; k < 3; ++k)
-        for (std::uint32_t e = front_.first_at(n[k == 2 ? 0 : k + 1]); e != kNoIndex; e = front_.next_at(e))
-          if (front_.face(e >> 2).node[(e & 3) == 2 ? 0 : (e & 3) + 1] == n[k] &&
-              std::find(cavity_.begin(), cavity_.end(), e >> 2) == cavity_.end())
-            cavity_.push_back(e >> 2);
+        for (std::uint32_t e = front_.first_at(n[k == 2 ? 0 : k + 1]); e != kNoIndex; e = front_.next_at(e)) {
+          FrontFace& g = front_.face(e >> 2);
+          if (g.stamp == stamp_ || g.node[(e & 3) == 2 ? 0 : (e & 3) + 1] != n[k]) continue;
+          g.stamp = stamp_;
+          cavity_.push_back(e >> 2);
+        }
     }
   }
 
@@ -103,8 +110,7 @@ class StarFiller {
     for (const std::uint32_t f : cavity_) box.add(front_.box(f));
     others_.clear();
     for (const std::uint32_t f : all)
-      if (front_.face(f).is_alive && box.overlaps(front_.box(f)) &&
-          std::find(cavity_.begin(), cavity_.end(), f) == cavity_.end())
+      if (front_.face(f).is_alive && front_.face(f).stamp != stamp_ && box.overlaps(front_.box(f)))
         others_.push_back(f);
   }
 
@@ -125,7 +131,6 @@ class StarFiller {
       for (const VertexIndex v : front_.nodes(f))
         if (place_of_.try_emplace(v, static_cast<std::uint32_t>(places_.size())).second)
           places_.push_back({c_.point(v), v, {}});
-    num_old_ = places_.size();
     add_deepest();
     add_before_faces();
     add_between_edges();
@@ -214,10 +219,13 @@ class StarFiller {
   /// Which faces see which places.
   void look() {
     quality_.assign(cavity_.size() * places_.size(), 0);
+    work_ += static_cast<double>(quality_.size()) * static_cast<double>(obstacles_.size());
     for (std::uint32_t i = 0; i < cavity_.size(); ++i) {
       const std::uint32_t f = cavity_[i];
       const auto n = front_.nodes(f);
       const auto [a, b, c] = corners(f);
+      const Point middle = (1.0 / 3) * (a + b + c);
+      const double reach = kFarthest * std::max({distance(a, b), distance(b, c), distance(c, a)});
       near_.start(f);
       for (const std::uint32_t g : obstacles_)
         if (g != f) near_.add_face(g);
@@ -227,6 +235,7 @@ class StarFiller {
       for (std::uint32_t p = 0; p < places_.size(); ++p) {
         Place& place = places_[p];
         if (place.vertex != kNoIndex && (place.vertex == n[0] || place.vertex == n[1] || place.vertex == n[2])) continue;
+        if (squared_length(place.at - middle) > reach * reach) continue;
         const double q = measure_quality(a, b, c, place.at);
         if (q <= 0 || orient3d(a, b, c, place.at) <= 0) continue;
         const std::size_t k = place.vertex == kNoIndex ? near_.add_place(place.at) : local_[p];
@@ -358,10 +367,11 @@ class StarFiller {
   Context& context_;
   Neighbourhood near_;
   std::size_t num_floors_ = 0;
+  double work_ = 0;
+  std::uint64_t stamp_ = std::uint64_t{1} << 62;
   std::vector<std::uint32_t> cavity_, others_, obstacles_;
   std::vector<Place> places_;
   std::unordered_map<VertexIndex, std::uint32_t> place_of_;
-  std::size_t num_old_ = 0;
   std::vector<std::uint32_t> local_;
   std::vector<double> quality_;  ///< by place, then face of the cavity
   std::vector<std::uint32_t> seen_;
@@ -376,13 +386,16 @@ std::vector<std::uint32_t> fill_by_stars(FrontStore& front, const std::vector<st
                                          FrontReport& report, Context& context) {
   StarFiller filler(front, report, context);
   filler.all = faces;
-  std::vector<std::uint32_t> left;
+  report.cavities_left = 0;
+  for (const std::uint32_t f : faces) front.face(f).stamp = 0;
   for (std::size_t i = 0; i < filler.all.size(); ++i) {  // it grows
     const std::uint32_t f = filler.all[i];
-    if (!front.face(f).is_alive || std::find(left.begin(), left.end(), f) != left.end()) continue;
-    if (getenv("TRACE")) fprintf(stderr, "cavity of face %u\n", f);
-    if (!filler.fill(f)) left.insert(left.end(), filler.cavity().begin(), filler.cavity().end());
+    if (front.face(f).is_alive && !filler.is_left(f)) ++(filler.fill(f) ? report.cavities_by_stars : report.cavities_left);
   }
+  std::vector<std::uint32_t> left = std::move(filler.all);
+  std::erase_if(left, [&](std::uint32_t f) { return !front.face(f).is_alive; });
+  std::sort(left.begin(), left.end());
+  left.erase(std::unique(left.begin(), left.end()), left.end());
   return left;
 }
 
