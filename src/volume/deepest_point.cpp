@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maximise d over (x, y, z, d) with normal . (x, y, z) - d >= normal . at for unit normals. Planes are added one by one;
-// one that cuts the present optimum off holds the new one, which is looked for on it, with one unknown less.
+// Maximise d over (x, y, z, d) with normal . (x, y, z) - d >= normal . at for unit normals. Planes are added one by
+// one; one that cuts the present optimum off holds the new one, which is looked for on it, with one unknown less.
 #include "volume/deepest_point.hpp"
 
 #include <algorithm>

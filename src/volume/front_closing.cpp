@@ -298,7 +298,7 @@ std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<st
   BoxOctree tree = plant_tree(front, faces);
   CavityFiller filler(front, tree, report);
   filler.faces_to_see = faces;
-  for (const std::uint32_t f : faces) front.face(f).stamp = 0;  // of an earlier time
+  for (const std::uint32_t f : faces) front.face(f).stamp = 0;    // of an earlier time
   for (std::size_t i = 0; i < filler.faces_to_see.size(); ++i) {  // it grows
     const std::uint32_t f = filler.faces_to_see[i];
     if (!front.face(f).is_alive || filler.is_given_up(f)) continue;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terms: a cavity is faces of the front that hang together by edges; its star from a place is the tets of that place and
-// the faces that see it. A star is sound without a test of its tets with each other: two of them that met inside would
-// have one of their faces in the other's way.
+// Terms: a cavity is faces of the front that hang together by edges; its star from a place is the tets of that place
+// and the faces that see it. A star is sound without a test of its tets with each other: two of them that met inside
+// would have one of their faces in the other's way.
 #include "volume/front_stars.hpp"
 
 #include <algorithm>
@@ -19,17 +19,17 @@ namespace delfront {
 namespace {
 
 constexpr double kFloors[] = {0, 1e-7, 1e-4, 0.01};  ///< least squared sines of dihedral angles, asked for last first
-constexpr std::size_t kMostFaces = 240;  ///< of a cavity
-constexpr double kMostWork = 2e8;        ///< pairs of faces looked at for a cavity, over all places
-constexpr double kFarthest = 4;          ///< a place from the middle of a face, in its longest edges
-constexpr std::uint64_t kLeft = ~std::uint64_t{0};  ///< stamp of faces of cavities that came to no end
-constexpr double kAlongRay[] = {0.5, 0.15};  ///< places between a face and what lies opposite
-constexpr std::size_t kPartners = 4;         ///< edges that are looked at from each edge
+constexpr std::size_t kMostFaces = 240;              ///< of a cavity
+constexpr double kMostWork = 2e8;                    ///< pairs of faces looked at for a cavity, over all places
+constexpr double kFarthest = 4;                      ///< a place from the middle of a face, in its longest edges
+constexpr std::uint64_t kLeft = ~std::uint64_t{0};   ///< stamp of faces of cavities that came to no end
+constexpr double kAlongRay[] = {0.5, 0.15};          ///< places between a face and what lies opposite
+constexpr std::size_t kPartners = 4;                 ///< edges that are looked at from each edge
 
 /// A place that may become the middle of a star.
 struct Place {
   Point at;
-  VertexIndex vertex = kNoIndex;  ///< kNoIndex: a new point
+  VertexIndex vertex = kNoIndex;    ///< kNoIndex: a new point
   std::vector<std::uint32_t> seen;  ///< faces of the cavity, by position
 };
 
@@ -39,8 +39,8 @@ struct Star {
   std::uint32_t place = kNoIndex;
   std::vector<std::uint32_t> faces;
   bool is_better_than(const Star& other) const {
-    return place != kNoIndex && (other.place == kNoIndex || gain > other.gain ||
-                                 (gain == other.gain && worst > other.worst));
+    return place != kNoIndex &&
+           (other.place == kNoIndex || gain > other.gain || (gain == other.gain && worst > other.worst));
   }
 };
 
@@ -234,7 +234,8 @@ class StarFiller {
         if (const auto at = place_of_.find(near_.id(k)); at != place_of_.end()) local_[at->second] = k;
       for (std::uint32_t p = 0; p < places_.size(); ++p) {
         Place& place = places_[p];
-        if (place.vertex != kNoIndex && (place.vertex == n[0] || place.vertex == n[1] || place.vertex == n[2])) continue;
+        if (place.vertex != kNoIndex && (place.vertex == n[0] || place.vertex == n[1] || place.vertex == n[2]))
+          continue;
         if (squared_length(place.at - middle) > reach * reach) continue;
         const double q = measure_quality(a, b, c, place.at);
         if (q <= 0 || orient3d(a, b, c, place.at) <= 0) continue;
@@ -390,7 +391,8 @@ std::vector<std::uint32_t> fill_by_stars(FrontStore& front, const std::vector<st
   for (const std::uint32_t f : faces) front.face(f).stamp = 0;
   for (std::size_t i = 0; i < filler.all.size(); ++i) {  // it grows
     const std::uint32_t f = filler.all[i];
-    if (front.face(f).is_alive && !filler.is_left(f)) ++(filler.fill(f) ? report.cavities_by_stars : report.cavities_left);
+    if (front.face(f).is_alive && !filler.is_left(f))
+      ++(filler.fill(f) ? report.cavities_by_stars : report.cavities_left);
   }
   std::vector<std::uint32_t> left = std::move(filler.all);
   std::erase_if(left, [&](std::uint32_t f) { return !front.face(f).is_alive; });
