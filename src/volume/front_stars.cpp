@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kFloors[] = {0, 1e-7, 1e-4, 0.01};  ///< least squared sines of dihedral angles, asked for last first
 constexpr std::size_t kMostFaces = 240;              ///< of a cavity
-constexpr double kMostWork = 2e8;                    ///< pairs of faces looked at for a cavity, over all places
+constexpr double kMostWork = 1e8;                    ///< pairs of faces looked at for a cavity, over all places
+constexpr double kMostInVain = 3e8;                  ///< the same for all cavities that came to no end
 constexpr double kFarthest = 4;                      ///< a place from the middle of a face, in its longest edges
 constexpr std::uint64_t kLeft = ~std::uint64_t{0};   ///< stamp of faces of cavities that came to no end
 constexpr double kAlongRay[] = {0.5, 0.15};          ///< places between a face and what lies opposite
@@ -56,16 +57,24 @@ class StarFiller {
   /// @return whether the cavity that has face f is filled
   bool fill(std::uint32_t f) {
     const auto first = front_.nodes(f);
-    work_ = 0;
-    for (num_floors_ = std::size(kFloors); num_floors_ > 0 && work_ < kMostWork; --num_floors_) {
-      tets_.clear();
-      if (try_fill(front_.find(first))) {
-        report_.cells_refilled += tets_.size();
-        return true;
+    with_others_ = false;
+    for (const bool with_others : {false, true}) {
+      if (in_vain_ > kMostInVain) break;
+      with_others_ = with_others;
+      work_ = 0;
+      for (num_floors_ = std::size(kFloors); num_floors_ > 0 && work_ < kMostWork; --num_floors_) {
+        tets_.clear();
+        if (try_fill(front_.find(first))) {
+          report_.cells_refilled += tets_.size();
+          return true;
+        }
+        take_back();
       }
-      take_back();
+      in_vain_ += work_;
+      if (others_.empty()) break;
     }
     collect(front_.find(first));
+    if (with_others_) join_others();
     for (const std::uint32_t g : cavity_) front_.face(g).stamp = kLeft;
     return false;
   }
@@ -74,7 +83,8 @@ class StarFiller {
   bool try_fill(std::uint32_t f) {
     collect(f);
     collect_others();
-    const std::size_t most = 2 * cavity_.size() + 20;
+    if (with_others_) join_others();
+    const std::size_t most = 2 * cavity_.size() + 20, most_idle = cavity_.size() / 3 + 5;
     std::size_t idle = 0;
     for (std::size_t step = 0; !cavity_.empty(); ++step) {
       if (step > most || cavity_.size() > kMostFaces || work_ > kMostWork) return false;
@@ -82,7 +92,7 @@ class StarFiller {
       find_places();
       look();
       const Star star = choose();
-      if (star.place == kNoIndex || (star.gain <= 0 && ++idle > most / 3)) return false;
+      if (star.place == kNoIndex || (star.gain <= 0 && ++idle > most_idle)) return false;
       add(star);
     }
     return true;
@@ -90,9 +100,16 @@ class StarFiller {
 
   /// The faces that hang together with f by edges.
   void collect(std::uint32_t f) {
-    cavity_.assign(1, f);
-    front_.face(f).stamp = ++stamp_;
-    for (std::size_t i = 0; i < cavity_.size(); ++i) {
+    cavity_.clear();
+    ++stamp_;
+    add_connected(f);
+  }
+
+  void add_connected(std::uint32_t f) {
+    std::size_t i = cavity_.size();
+    cavity_.push_back(f);
+    front_.face(f).stamp = stamp_;
+    for (; i < cavity_.size(); ++i) {
       const auto n = front_.nodes(cavity_[i]);
       for (unsigned k = 0; k < 3; ++k)
         for (std::uint32_t e = front_.first_at(n[k == 2 ? 0 : k + 1]); e != kNoIndex; e = front_.next_at(e)) {
@@ -112,6 +129,13 @@ class StarFiller {
     for (const std::uint32_t f : all)
       if (front_.face(f).is_alive && front_.face(f).stamp != stamp_ && box.overlaps(front_.box(f)))
         others_.push_back(f);
+  }
+
+  /// Shells one inside the other have to be filled as one.
+  void join_others() {
+    for (const std::uint32_t f : others_)
+      if (front_.face(f).stamp != stamp_) add_connected(f);
+    collect_others();
   }
 
   std::array<Point, 3> corners(std::uint32_t f) const {
@@ -368,7 +392,8 @@ class StarFiller {
   Context& context_;
   Neighbourhood near_;
   std::size_t num_floors_ = 0;
-  double work_ = 0;
+  bool with_others_ = false;
+  double work_ = 0, in_vain_ = 0;
   std::uint64_t stamp_ = std::uint64_t{1} << 62;
   std::vector<std::uint32_t> cavity_, others_, obstacles_;
   std::vector<Place> places_;
