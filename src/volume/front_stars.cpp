@@ -155,9 +155,25 @@ class StarFiller {
       for (const VertexIndex v : front_.nodes(f))
         if (place_of_.try_emplace(v, static_cast<std::uint32_t>(places_.size())).second)
           places_.push_back({c_.point(v), v, {}});
+    find_edges();
     add_deepest();
     add_before_faces();
     add_between_edges();
+  }
+
+  /// Embedded edges and points that have no tets yet are in the way, and their ends are places.
+  void find_edges() {
+    Box box;
+    for (const std::uint32_t f : obstacles_) box.add(front_.box(f));
+    edges_.clear();
+    front_.obstacles().for_each_overlap(box, [&](std::uint32_t i) {
+      const FrontObstacle& o = front_.obstacles()[i];
+      if (!o.is_pending()) return;
+      edges_.push_back(i);
+      for (const VertexIndex v : {o.a, o.b})
+        if (place_of_.try_emplace(v, static_cast<std::uint32_t>(places_.size())).second)
+          places_.push_back({c_.point(v), v, {}});
+    });
   }
 
   void add_deepest() {
@@ -250,7 +266,9 @@ class StarFiller {
       const auto [a, b, c] = corners(f);
       const Point middle = (1.0 / 3) * (a + b + c);
       const double reach = kFarthest * std::max({distance(a, b), distance(b, c), distance(c, a)});
+      const FrontFrame frame = front_.frame(f);
       near_.start(f);
+      for (const std::uint32_t o : edges_) near_.add_obstacle(front_.obstacles()[o]);
       for (const std::uint32_t g : obstacles_)
         if (g != f) near_.add_face(g);
       local_.assign(places_.size(), kNoIndex);
@@ -261,7 +279,8 @@ class StarFiller {
         if (place.vertex != kNoIndex && (place.vertex == n[0] || place.vertex == n[1] || place.vertex == n[2]))
           continue;
         if (squared_length(place.at - middle) > reach * reach) continue;
-        const double q = measure_quality(a, b, c, place.at);
+        const double q =
+            measure_quality(frame.to_frame(a), frame.to_frame(b), frame.to_frame(c), frame.to_frame(place.at));
         if (q <= 0 || orient3d(a, b, c, place.at) <= 0) continue;
         const std::size_t k = place.vertex == kNoIndex ? near_.add_place(place.at) : local_[p];
         if (near_.test(k, 0, 1) == Neighbourhood::Verdict::free) {
@@ -376,6 +395,7 @@ class StarFiller {
     const VertexIndex v = c_.take_vertices(1)[0];
     c_.set_vertex(v, places_[star.place].at, h / static_cast<double>(star.faces.size()));
     front_.add_vertex();
+    if (front_.sizes().are_stretched()) front_.sizes().ask(v);
     ++report_.points;
     return v;
   }
@@ -396,6 +416,7 @@ class StarFiller {
   double work_ = 0, in_vain_ = 0;
   std::uint64_t stamp_ = std::uint64_t{1} << 62;
   std::vector<std::uint32_t> cavity_, others_, obstacles_;
+  std::vector<std::uint32_t> edges_;  ///< embedded ones, and points
   std::vector<Place> places_;
   std::unordered_map<VertexIndex, std::uint32_t> place_of_;
   std::vector<std::uint32_t> local_;
