@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "brep/edge_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace delfront {
+namespace {
+
+constexpr std::size_t kLeastPanels = 32, kMostPanels = std::size_t(1) << 22;
+constexpr double kPanelsPerSide = 8;
+constexpr double kConverged = 1e-4;  ///< change of the integral, of itself
+constexpr double kAlmost = 1e-9;     ///< below the half that is rounded up, so that equal curves get equal numbers
+
+/// 1/h times the speed at equal steps of t: what adds up to the number of sides.
+std::vector<double> sample_density(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
+                                   const WantedSize& size, std::size_t panels) {
+  std::vector<CurveSample> samples(panels + 1);
+  std::vector<Point> at(panels + 1);
+  std::vector<double> h(panels + 1), density(panels + 1);
+  for (std::size_t i = 0; i <= panels; ++i) {
+    const double f = double(i) / double(panels);
+    samples[i] = sample((1 - f) * range[0] + f * range[1]);
+    at[i] = samples[i].at;
+  }
+  size.asked().sizes(at, h);
+  for (std::size_t i = 0; i <= panels; ++i)
+    density[i] = length(samples[i].first) / size.lowered(h[i], samples[i].curvature, at[i]);
+  return density;
+}
+
+/// By Simpson's rule, to the middle of each pair of panels by the parabola through its three values.
+std::vector<double> integrate(const std::vector<double>& density, double step) {
+  std::vector<double> sum(density.size(), 0);
+  for (std::size_t i = 0; i + 2 < density.size(); i += 2) {
+    const double a = density[i], b = density[i + 1], c = density[i + 2];
+    sum[i + 1] = sum[i] + step * (5 * a + 8 * b - c) / 12;
+    sum[i + 2] = sum[i] + step * (a + 4 * b + c) / 3;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::vector<double> divide_curve(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
+                                 const WantedSize& size, std::size_t least) {
+  std::vector<double> density, sum;
+  double before = -1;
+  for (std::size_t panels = kLeastPanels; panels <= kMostPanels; panels *= 2) {
+    density = sample_density(sample, range, size, panels);
+    sum = integrate(density, (range[1] - range[0]) / double(panels));
+    const double now = sum.back();
+    if (std::abs(now - before) <= kConverged * now && double(panels) >= kPanelsPerSide * now) break;
+    before = now;
+  }
+  const double all = sum.back();
+  const auto parts = std::max(least, std::size_t(std::floor(all + 0.5 + kAlmost)));
+  const double step = (range[1] - range[0]) / double(sum.size() - 1);
+  std::vector<double> t = {range[0]};
+  std::size_t i = 0;
+  for (std::size_t k = 1; k < parts; ++k) {
+    const double wanted = all * double(k) / double(parts);
+    while (i + 2 < sum.size() && sum[i + 1] <= wanted) ++i;
+    // within a panel the density goes evenly from one value to the other, up to a factor
+    const double a = density[i], b = density[i + 1], f = (wanted - sum[i]) / (sum[i + 1] - sum[i]) * 0.5 * (a + b);
+    const double root = std::sqrt(std::max(a * a + 2 * (b - a) * f, 0.0));
+    t.push_back(range[0] + step * (double(i) + 2 * f / (a + root)));
+  }
+  t.push_back(range[1]);
+  return t;
+}
+
+namespace {
+
+class Divider {
+ public:
+  Divider(const Brep& brep, const WantedSize& size) : brep_(brep), size_(size), uses_(brep.edges.size()) {
+    for (const BrepFace& face : brep.faces)
+      for (const auto& loop : face.loops)
+        for (const BrepUse& use : loop) uses_[use.edge.index()].push_back({face.surface.get(), use.curve.get()});
+  }
+
+  Array<EdgeId, EdgePoints> run(std::size_t& num_vertices, Context& context) {
+    Array<EdgeId, EdgePoints> points(brep_.edges.size());
+    std::map<std::array<CornerId, 2>, int> single;  // open edges of one side, by their corners
+    std::size_t next = brep_.corners.size();
+    for (std::size_t e = 0; e < points.size(); ++e) {
+      context.check_limits();
+      EdgePoints& made = points[EdgeId(e)];
+      const BrepEdge& edge = brep_.edges[EdgeId(e)];
+      made.t = divide(e);
+      if (!edge.is_degenerate() && made.t.size() == 2) {
+        const auto [low, high] = std::minmax(edge.corners[0], edge.corners[1]);
+        if (single[{low, high}]++ > 0) made.t.insert(made.t.begin() + 1, 0.5 * (made.t[0] + made.t[1]));
+      }
+      number(edge, made, next);
+    }
+    num_vertices = next;
+    return points;
+  }
+
+ private:
+  struct Beside {
+    const SmoothSurface* surface;
+    const ParameterCurve* curve;
+  };
+
+  std::vector<double> divide(std::size_t e) const {
+    const BrepEdge& edge = brep_.edges[EdgeId(e)];
+    if (edge.is_degenerate()) return {edge.range[0], edge.range[1]};
+    const bool is_closed = edge.corners[0] == edge.corners[1];
+    const auto sample = [&](double t) {
+      const CurveDerivatives c = edge.curve->derivatives(t);
+      const double speed = length(c.first);
+      double bend = speed > 0 ? length(cross(c.first, c.second)) / (speed * speed * speed) : 0;
+      for (const Beside& beside : uses_[e])
+        bend = std::max(bend, largest_curvature(beside.surface->derivatives(beside.curve->at(t))));
+      return CurveSample{c.at, c.first, bend};
+    };
+    return divide_curve(sample, edge.range, size_, is_closed ? 3 : 1);
+  }
+
+  void number(const BrepEdge& edge, EdgePoints& made, std::size_t& next) const {
+    const bool has_corners = edge.corners[0].is_valid();
+    for (std::size_t i = 0; i < made.t.size(); ++i) {
+      const bool is_first = i == 0, is_last = i + 1 == made.t.size();
+      if (has_corners && (is_first || is_last)) {
+        const CornerId corner = edge.corners[is_last];
+        made.vertex.push_back(corner.value);
+        made.at.push_back(brep_.corners[corner].at);
+      } else if (is_last) {
+        made.vertex.push_back(made.vertex[0]);
+        made.at.push_back(made.at[0]);
+      } else {
+        made.vertex.push_back(static_cast<std::uint32_t>(next++));
+        made.at.push_back(edge.curve->at(made.t[i]));
+      }
+    }
+  }
+
+  const Brep& brep_;
+  const WantedSize& size_;
+  std::vector<std::vector<Beside>> uses_;
+};
+
+}  // namespace
+
+Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, std::size_t& num_vertices,
+                                       Context& context) {
+  return Divider(brep, size).run(num_vertices, context);
+}
+
+FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges) {
+  FaceGrid grid;
+  std::vector<std::uint32_t> poles;
+  for (const auto& loop : face.loops) {
+    std::vector<std::uint32_t> chain;
+    for (const BrepUse& use : loop) {
+      const EdgePoints& points = edges[use.edge];
+      if (brep.edges[use.edge].is_degenerate()) poles.push_back(points.vertex[0]);
+      const std::size_t last = points.t.size() - 1;
+      for (std::size_t i = 0; i < last; ++i) {
+        const std::size_t k = use.is_reversed ? last - i : i;
+        chain.push_back(static_cast<std::uint32_t>(grid.points.size()));
+        grid.points.push_back({points.at[k], use.curve->at(points.t[k]), points.vertex[k], false});
+      }
+    }
+    grid.loops.push_back(std::move(chain));
+  }
+  for (FacePoint& p : grid.points) p.is_pole = std::find(poles.begin(), poles.end(), p.vertex) != poles.end();
+  return grid;
+}
+
+}  // namespace delfront

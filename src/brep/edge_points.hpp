@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "brep/face_grid.hpp"
+
+namespace delfront {
+
+/// @brief Divide all edges so that each side is as long as the sizes there: the integral of 1 / h over arc length,
+/// rounded, in equal parts (F3). What bends along an edge, or on the faces beside it, counts.
+///
+/// Vertices are numbered: corners first, then those within edges. Closed edges get three sides at least, open edges
+/// that share both corners two.
+/// @param num_vertices  set to the number of all
+/// @par Source  Löhner (2008), 2.6: sides along curves
+Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, std::size_t& num_vertices,
+                                       Context& context);
+
+/// @brief Points that divide a curve in equal parts of the integral of 1 / h over arc length.
+/// @param derivatives  of place by t, and what bends there, 1 / length
+struct CurveSample {
+  Point at, first;
+  double curvature;
+};
+std::vector<double> divide_curve(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
+                                 const WantedSize& size, std::size_t least);
+
+}  // namespace delfront

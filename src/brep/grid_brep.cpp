@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole of gridding smooth geometry on one screen: points on edges, faces, checks, and again with smaller sizes
+// where something failed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.hpp"
+#include "brep/assemble_brep.hpp"
+#include "brep/edge_points.hpp"
+#include "brep/face_mesh.hpp"
+#include "delfront/errors.hpp"
+#include "geometry/surface_findings.hpp"
+#include "surface/working_size.hpp"
+
+namespace delfront {
+namespace {
+
+constexpr std::size_t kMostRounds = 8;
+constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
+constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
+constexpr double kGrowth = 1.4;      ///< of sizes round those
+constexpr std::size_t kPlacesOfFace = 200;
+constexpr double kDegree = std::numbers::pi / 180;
+
+class BrepGridder {
+ public:
+  BrepGridder(const Brep& brep, const SizeField& size, const BrepOptions& options, BrepGridReport& report,
+              Context& context)
+      : brep_(brep),
+        options_(options),
+        report_(report),
+        context_(context),
+        working_(size, nullptr),
+        wanted_(working_, options.most_turn_deg * kDegree),
+        grids_(brep.faces.size()),
+        failures_(brep.faces.size(), 0) {
+    wanted_.find_tips(brep);
+    lowered_.growth = kGrowth;
+  }
+
+  Model run() {
+    for (report_.rounds = 1; report_.rounds <= kMostRounds; ++report_.rounds) {
+      context_.progress("surface", report_.rounds - 1, 0, "rounds");
+      divide();
+      parallel_for(context_.threads, grids_.size(), [&](std::size_t f) { grid_face(FaceId(f)); });
+      if (!mend_faces()) continue;
+      Model model = assemble_brep(brep_, edges_, grids_, num_vertices_, report_.entity);
+      if (options_.checks_crossings && !mend_crossings(model)) continue;
+      fill_report(model);
+      return model;
+    }
+    throw MeshingError(fmt::format("no valid grid was found: {}; lower the size there", why_), {{why_at_, {}}});
+  }
+
+ private:
+  /// F3, twice: from sides that are shorter than asked for, sizes grow.
+  void divide() {
+    working_.lower(lowered_, context_);
+    edges_ = divide_edges(brep_, wanted_, num_vertices_, context_);
+    const BoundarySizes sizes = find_short_sides();
+    if (sizes.points.size() == lowered_.points.size()) return;
+    working_.lower(sizes, context_);
+    edges_ = divide_edges(brep_, wanted_, num_vertices_, context_);
+  }
+
+  /// Beside the places where sizes are lowered already.
+  BoundarySizes find_short_sides() {
+    std::vector<Point> at;
+    std::vector<double> side;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (brep_.edges[EdgeId(e)].is_degenerate()) continue;
+      const EdgePoints& points = edges_[EdgeId(e)];
+      for (std::size_t i = 0; i + 1 < points.t.size(); ++i) {
+        at.push_back(0.5 * (points.at[i] + points.at[i + 1]));
+        side.push_back(distance(points.at[i], points.at[i + 1]));
+      }
+    }
+    std::vector<double> asked(at.size());
+    evaluate_sizes(working_, at, asked, context_);
+    BoundarySizes sizes = lowered_;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (!(side[i] < kShortShare * asked[i])) continue;
+      sizes.points.push_back(at[i]);
+      sizes.size.push_back(side[i]);
+    }
+    return sizes;
+  }
+
+  /// Mapped, else directly in space, else in charts that are far from lengths in space.
+  void grid_face(FaceId f) {
+    const BrepFace& face = brep_.faces[f];
+    FaceGrid& grid = grids_[f];
+    const FaceGrid border = make_face_border(brep_, face, edges_);
+    const std::vector<std::uint64_t> kept_sides = kept_sides_of(border);
+    const auto fill = [&](const auto& gridder) {
+      grid = border;
+      gridder();
+      lift_small_angles(*face.surface, kept_sides, grid);
+      check_face_grid(face, options_.normal_angle_deg * kDegree, grid);
+      return grid.gave_up.empty();
+    };
+    const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
+    if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
+    if (options_.method == BrepOptions::Method::mapped) return;
+    const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
+    const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
+    if (!is_done && options_.method == BrepOptions::Method::choose) fill([&] { map(true); });
+    if (!grid.is_mapped) grid.why_direct = why;
+  }
+
+  void lower_at(Point at) {
+    lowered_.points.push_back(at);
+    lowered_.size.push_back(kLowerShare * wanted_.asked().size(at));
+    ++report_.sizes_lowered;
+  }
+
+  /// Sizes are lowered at the place, the next time all over the face.
+  void fail(FaceId f, const std::string& why, Point at) {
+    const BrepFace& face = brep_.faces[f];
+    why_ = face.name.empty() ? fmt::format("face {}: {}", f.value, why) : fmt::format("face '{}': {}", face.name, why);
+    why_at_ = at;
+    lower_at(at);
+    const auto& points = grids_[f].points;
+    if (failures_[f.index()]++ > 0)
+      for (std::size_t i = 0; i < points.size(); i += points.size() / kPlacesOfFace + 1) lower_at(points[i].at);
+  }
+
+  bool mend_faces() {
+    bool is_whole = true;
+    for (std::size_t f = 0; f < grids_.size(); ++f) {
+      const FaceGrid& grid = grids_[FaceId(f)];
+      if (grid.gave_up.empty()) continue;
+      is_whole = false;
+      fail(FaceId(f), grid.gave_up, grid.gave_up_at);
+    }
+    return is_whole;
+  }
+
+  /// @return whether triangles meet in common corners and sides alone
+  bool mend_crossings(const Model& model) {
+    const Surface surface(model);
+    std::vector<Finding> findings;
+    find_bad_triangles(surface, findings);
+    find_intersections(surface, findings, context_);
+    bool is_sound = true;
+    std::vector<bool> is_done(grids_.size(), false);
+    for (const Finding& finding : findings) {
+      if (finding.severity != Severity::error) continue;
+      is_sound = false;
+      for (const Place& place : finding.places)
+        for (const std::uint32_t f : place.ids) {
+          if (f >= is_done.size() || is_done[f]) continue;
+          is_done[f] = true;
+          fail(FaceId(std::size_t(f)), finding.kind, place.at);
+        }
+    }
+    return is_sound;
+  }
+
+  void fill_report(const Model& m) {
+    BrepGridReport& r = report_;
+    r.triangles = m.triangles.size();
+    r.points = m.points.size();
+    r.faces.assign(grids_.size(), {});
+    for (std::size_t f = 0; f < grids_.size(); ++f) {
+      const FaceGrid& grid = grids_[FaceId(f)];
+      r.faces[f].name = brep_.faces[FaceId(f)].name;
+      r.faces[f].is_mapped = grid.is_mapped;
+      r.faces[f].why = grid.why_direct;
+      r.largest_distance = std::max(r.largest_distance, grid.largest_distance);
+      r.largest_normal_angle_deg = std::max(r.largest_normal_angle_deg, grid.largest_angle / kDegree);
+    }
+    r.min_angle_deg = 180;
+    for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+      double least = 180;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& v = m.triangles[TriangleId(t)];
+        const Point a = m.points[v[k]], u = m.points[v[(k + 1) % 3]] - a, w = m.points[v[(k + 2) % 3]] - a;
+        least = std::min(least, std::atan2(length(cross(u, w)), dot(u, w)) / kDegree);
+      }
+      BrepFaceReport& face = r.faces[m.input_face[TriangleId(t)]];
+      ++face.triangles;
+      face.min_angle_deg = std::min(face.min_angle_deg, least);
+      r.min_angle_deg = std::min(r.min_angle_deg, least);
+      r.mean_min_angle_deg += least / double(m.triangles.size());
+      r.below_25_deg += least < 25;
+    }
+  }
+
+  const Brep& brep_;
+  const BrepOptions& options_;
+  BrepGridReport& report_;
+  Context& context_;
+  WorkingSize working_;
+  WantedSize wanted_;
+  BoundarySizes lowered_;
+  Array<EdgeId, EdgePoints> edges_;
+  Array<FaceId, FaceGrid> grids_;
+  std::vector<int> failures_;
+  std::size_t num_vertices_ = 0;
+  std::string why_;
+  Point why_at_;
+};
+
+}  // namespace
+
+Model grid_brep(const Brep& brep, const SizeField& size, const BrepOptions& options, BrepGridReport& report,
+                Context& context) {
+  check_floating_point_mode();
+  report = {};
+  const StageTimer timer(context, "surface");
+  check_brep(brep);
+  return BrepGridder(brep, size, options, report, context).run();
+}
+
+}  // namespace delfront

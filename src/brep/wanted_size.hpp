@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "delfront/brep.hpp"
+
+namespace delfront {
+
+/// @brief The sizes that a face is gridded with: those asked for, and less where a side of that length would turn too
+/// much along the surface or an edge.
+class WantedSize {
+ public:
+  /// @param most_turn  radians that a side may turn
+  WantedSize(const SizeField& asked, double most_turn) : asked_(asked), most_turn_(most_turn) {}
+
+  const SizeField& asked() const { return asked_; }
+
+  /// @brief Where surfaces come to a tip: bends are infinite there, sizes need not be nothing.
+  void find_tips(const Brep& brep);
+
+  /// @brief What is left of an asked size where so much is bent.
+  double lowered(double asked, double curvature, Point at) const {
+    if (!(asked * curvature > most_turn_)) return asked;
+    double allowed = most_turn_ / curvature;
+    for (const Tip& tip : tips_)
+      allowed = std::max(allowed, kTipShare * std::max(distance(at, tip.at), std::min(kTipCells * asked, tip.least)));
+    return std::min(asked, allowed);
+  }
+
+  /// @brief Whether lowered() says less than is asked for anywhere on a face, by samples in a box of parameters.
+  bool is_lowered_on(const SmoothSurface& surface, const ParameterBox& box) const;
+
+ private:
+  static constexpr double kTipShare = 0.8;  ///< of the distance from a tip: allowed there at least
+  static constexpr double kTipCells = 0.6;  ///< of the asked size, as that distance
+  struct Tip {
+    Point at;
+    double least;  ///< a share of how far its face goes: no distance from it counts for less
+  };
+  const SizeField& asked_;
+  double most_turn_;
+  std::vector<Tip> tips_;
+};
+
+}  // namespace delfront
