@@ -200,11 +200,12 @@ def markdown(results, options):
     return "\n".join(lines) + "\n"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def read_options(doc, page):
+    """What the tables of the corpus ask on the command line; out is the page or "-". Exits with 77 without the data."""
+    parser = argparse.ArgumentParser(description=doc.splitlines()[0])
     parser.add_argument("--delfront", default=os.path.join(ROOT, "build", "release", "delfront"))
     parser.add_argument("--corpus", default=os.path.join(ROOT, "tests", "corpus.toml"))
-    parser.add_argument("--out", help="default: docs/corpus.md, or with --only '-', standard output")
+    parser.add_argument("--out", help=f"default: docs/{page}, or with --only '-', standard output")
     parser.add_argument("--only", default="", help="part of a path, may hold * and ?")
     parser.add_argument("--without-large", action="store_true", help="leave out the files marked large, by name")
     parser.add_argument("--timeout", type=float, default=600, help="seconds a run")
@@ -214,17 +215,36 @@ def main():
     options = parser.parse_args()
     options.data = os.path.join(shared_folder(), "data")
     options.checker = os.path.join(shared_folder(), "tools", "check_mesh.py")
+    options.out = options.out or ("-" if options.only else os.path.join(ROOT, "docs", page))
     if not os.path.isdir(options.data):
-        print(f"SKIPPED corpus_table: no data at {options.data}; set DELFRONT_SHARED")
-        return 77
+        print(f"SKIPPED {parser.prog}: no data at {options.data}; set DELFRONT_SHARED")
+        sys.exit(77)
     if not os.access(options.delfront, os.X_OK):
         parser.error(f"{options.delfront} is not there; build it or give --delfront")
+    return options
+
+
+def read_rows(options):
+    """Those rows of the corpus that the options name."""
     rows = read_corpus(options.corpus, options.only)
     for row in [r for r in rows if options.without_large and r.get("large")]:
         print(f"left out: {row['path']}")
         rows.remove(row)
     if not rows:
-        parser.error(f"no file of {options.corpus} matches '{options.only}'")
+        sys.exit(f"no file of {options.corpus} matches '{options.only}'")
+    return rows
+
+
+def write_page(options, text):
+    if options.out == "-":
+        print(text)
+    else:
+        with open(options.out, "w", encoding="utf-8") as file:
+            file.write(text)
+
+
+def main():
+    options = read_options(__doc__, "corpus.md")
 
     def grid_one(row):
         wanted = RUNS if row["valid"] else RUNS[:1]
@@ -237,14 +257,8 @@ def main():
         return row, runs
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        results = list(pool.map(grid_one, rows))
-    page = markdown(results, options)
-    out = options.out or ("-" if options.only else os.path.join(ROOT, "docs", "corpus.md"))
-    if out == "-":
-        print(page)
-    else:
-        with open(out, "w", encoding="utf-8") as file:
-            file.write(page)
+        results = list(pool.map(grid_one, read_rows(options)))
+    write_page(options, markdown(results, options))
     return 1 if any(run.problems for _, runs in results for run in runs) else 0
 
 

@@ -9,12 +9,10 @@ code with delfront. Cavities: what the sweeps left, filled round one point in ea
 closed by constrained Delaunay, with their share of all tetrahedra (at most 0.1 %). Exit 1 where a run or a grid is not
 as it should be.
 """
-import argparse
-import os
 import sys
 import tempfile
 
-from corpus_table import ROOT, Run, read_corpus, shared_folder
+from corpus_table import Run, read_options, read_rows, write_page
 
 MOST_BY_DELAUNAY = 1e-3
 HEAD = """<!-- made by scripts/front_table.py -->
@@ -48,19 +46,8 @@ def line_of(row, run):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--delfront", default=os.path.join(ROOT, "build", "release", "delfront"))
-    parser.add_argument("--corpus", default=os.path.join(ROOT, "tests", "corpus.toml"))
-    parser.add_argument("--only", default="", help="part of a path, may hold * and ?")
-    parser.add_argument("--without-large", action="store_true")
-    parser.add_argument("--out", help="default: docs/front-corpus.md, or with --only '-', standard output")
-    parser.add_argument("--timeout", type=float, default=600, help="seconds a run")
-    parser.add_argument("--python", default="/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable)
-    options = parser.parse_args()
-    options.data = os.path.join(shared_folder(), "data")
-    options.checker = os.path.join(shared_folder(), "tools", "check_mesh.py")
-    rows = [row for row in read_corpus(options.corpus, options.only) if row.get("valid") and
-            not (options.without_large and row.get("large"))]
+    options = read_options(__doc__, "front-corpus.md")
+    rows = [row for row in read_rows(options) if row["valid"]]
     lines, bad = [], 0
     with tempfile.TemporaryDirectory() as folder:
         for row in rows:
@@ -68,10 +55,7 @@ def main():
             lines.append(line_of(row, run))
             print(lines[-1], flush=True)
             bad += bool(run.problems)
-    out = options.out or ("-" if options.only else os.path.join(ROOT, "docs", "front-corpus.md"))
-    if out != "-":
-        with open(out, "w", encoding="utf-8") as file:
-            file.write(HEAD + "\n".join(lines) + f"\n\n{len(rows) - bad} of {len(rows)} as they should be.\n")
+    write_page(options, HEAD + "\n".join(lines) + f"\n\n{len(rows) - bad} of {len(rows)} as they should be.\n")
     return 1 if bad else 0
 
 

@@ -8,7 +8,6 @@ Each file is run as `mesh FILE --surface-method front`, at the mean side of its 
 with --stop-after surface, once to tetrahedra. check_mesh.py, which shares no code with delfront, compares the boundary
 of the tetrahedra with the surface written. Exit 1 where a run or a grid is not as it should be, 77 without the data.
 """
-import argparse
 import json
 import os
 import subprocess
@@ -16,7 +15,7 @@ import sys
 import tempfile
 import time
 
-from corpus_table import ROOT, first_error, read_corpus, shared_folder
+from corpus_table import first_error, read_options, read_rows, write_page
 
 RUNS = (("mean side", []), ("2 % of the diagonal", ["--hmax", "2%"]))
 HEAD = """<!-- made by scripts/surface_table.py -->
@@ -82,21 +81,9 @@ def judge(row, arguments, options, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--delfront", default=os.path.join(ROOT, "build", "release", "delfront"))
-    parser.add_argument("--corpus", default=os.path.join(ROOT, "tests", "corpus.toml"))
-    parser.add_argument("--only", default="", help="part of a path, may hold * and ?")
-    parser.add_argument("--out", help="default: docs/surface-corpus.md, or with --only '-', standard output")
-    parser.add_argument("--timeout", type=float, default=300, help="seconds a run")
-    parser.add_argument("--python", default="/usr/bin/python3" if os.path.exists("/usr/bin/python3") else sys.executable)
-    options = parser.parse_args()
-    options.data = os.path.join(shared_folder(), "data")
-    options.checker = os.path.join(shared_folder(), "tools", "check_mesh.py")
-    if not os.path.isdir(options.data):
-        print("the shared data are not there", file=sys.stderr)
-        return 77
+    options = read_options(__doc__, "surface-corpus.md")
     lines, bad = [], 0
-    rows = [row for row in read_corpus(options.corpus, options.only) if row.get("valid")]
+    rows = [row for row in read_rows(options) if row["valid"]]
     start = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         for row in rows:
@@ -107,10 +94,7 @@ def main():
                 print(lines[-1], flush=True)
                 bad += bool(problem)
     print(f"{time.monotonic() - start:.0f} s", file=sys.stderr)
-    out = options.out or ("-" if options.only else os.path.join(ROOT, "docs", "surface-corpus.md"))
-    if out != "-":
-        with open(out, "w", encoding="utf-8") as file:
-            file.write(HEAD + "\n".join(lines) + f"\n\n{len(lines) - bad} of {len(lines)} as they should be.\n")
+    write_page(options, HEAD + "\n".join(lines) + f"\n\n{len(lines) - bad} of {len(lines)} as they should be.\n")
     return 1 if bad else 0
 
 

@@ -137,8 +137,8 @@ struct Brep {
   double tolerance = 0;  ///< between what should coincide; 0: 1e-9 of the diagonal
 };
 
-/// @brief What makes a Brep unfit for gridding: ids that do not exist, ranges, loops that do not close, parameter curves
-/// that disagree with their edge.
+/// @brief What makes a Brep unfit for gridding: ids that do not exist, ranges, loops that do not close, parameter
+/// curves that disagree with their edge.
 /// @throws InputError  the first of it, with its edge or face and place
 void check_brep(const Brep& brep);
 
@@ -146,7 +146,7 @@ struct BrepOptions {
   /// @brief How faces are gridded. choose: mapped, and directly in space where that fails.
   enum class Method : std::uint8_t { choose, mapped, direct };
   Method method = Method::choose;
-  double most_turn_deg = 40;    ///< sides are so short that neither edges nor surfaces turn by more along them
+  double most_turn_deg = 40;     ///< sides are so short that neither edges nor surfaces turn by more along them
   double normal_angle_deg = 90;  ///< a triangle whose normal differs by more from a corner's is a failure
   int smoothing_passes = 6;
   bool checks_crossings = true;  ///< the whole surface, exactly
@@ -165,10 +165,10 @@ struct BrepFaceReport {
 struct BrepGridReport {
   std::size_t triangles = 0, points = 0;
   double min_angle_deg = 0, mean_min_angle_deg = 0;
-  std::size_t below_25_deg = 0;       ///< triangles with an angle under 25 degrees
-  double largest_distance = 0;        ///< of triangles' middles from their surface
+  std::size_t below_25_deg = 0;         ///< triangles with an angle under 25 degrees
+  double largest_distance = 0;          ///< of triangles' middles from their surface
   double largest_normal_angle_deg = 0;  ///< between a triangle and its surface at one of its corners
-  std::size_t rounds = 0;             ///< of gridding; sizes are lowered where the one before failed
+  std::size_t rounds = 0;               ///< of gridding; sizes are lowered where the one before failed
   std::size_t sizes_lowered = 0;
   std::vector<BrepFaceReport> faces;
   /// One a point of the model: the corner, edge or face of the Brep that it lies on; t is in u for edges.

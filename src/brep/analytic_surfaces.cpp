@@ -39,9 +39,7 @@ class PlaneSurface final : public InFrame {
   ParameterBox box() const override { return {{-kInfinite, -kInfinite}, {kInfinite, kInfinite}}; }
 
  private:
-  SurfaceDerivatives local(Point2 uv) const override {
-    return {{uv.x, uv.y, 0}, {1, 0, 0}, {0, 1, 0}, {}, {}, {}};
-  }
+  SurfaceDerivatives local(Point2 uv) const override { return {{uv.x, uv.y, 0}, {1, 0, 0}, {0, 1, 0}, {}, {}, {}}; }
 };
 
 class CylinderSurface final : public InFrame {

@@ -89,16 +89,15 @@ class Checker {
 
   void check_use(const BrepFace& face, const std::string& name, const BrepUse& use) const {
     if (use.edge.index() >= brep_.edges.size()) throw InputError(name + " uses an edge that does not exist");
-    if (!use.curve)
-      throw InputError(name + " has no parameter curve for " + edge_name(use.edge.index()));
+    if (!use.curve) throw InputError(name + " has no parameter curve for " + edge_name(use.edge.index()));
     const BrepEdge& edge = brep_.edges[use.edge];
     for (int i = 0; i <= kSamples; ++i) {
       const double t = edge.range[0] + (edge.range[1] - edge.range[0]) * i / kSamples;
       const Point at = edge.is_degenerate() ? brep_.corners[edge.corners[0]].at : edge.curve->at(t);
       const double away = distance(at, face.surface->at(use.curve->at(t)));
       if (!(away <= 2 * tolerance_))
-        throw InputError(fmt::format("{}: the parameter curve of {} lies {:g} away from the edge (tolerance {:g})", name,
-                                     edge_name(use.edge.index()), away, tolerance_),
+        throw InputError(fmt::format("{}: the parameter curve of {} lies {:g} away from the edge (tolerance {:g})",
+                                     name, edge_name(use.edge.index()), away, tolerance_),
                          {{at, {use.edge.value}}});
     }
   }

@@ -11,9 +11,9 @@ namespace {
 constexpr int kPieces = 256, kAcross = 9;  ///< of tables; samples across for means
 constexpr double kAlmostStraight = 1.01;   ///< ratio of slopes
 constexpr double kMostTurn = 1.9 * std::numbers::pi;
-constexpr double kLeastAround = 1e-3;  ///< of the widest: another pole at the far end
+constexpr double kLeastAround = 1e-3;                      ///< of the widest: another pole at the far end
 constexpr double kLeastUnrolled = 1.3 * std::numbers::pi;  ///< with less, few triangles at the tip turn by too much
-constexpr double kFullTurn = 1 - 1e-9;  ///< of a period
+constexpr double kFullTurn = 1 - 1e-9;                     ///< of a period
 
 }  // namespace
 
@@ -84,7 +84,7 @@ void Chart::make_polar(const ParameterBox& box) {
   const double period = surface_.period()[by_v ? 0 : 1], inside = low ? 1 : -1;
   const double far = std::max(std::abs(w0 - pole_at_), std::abs(w1 - pole_at_)), step = far / kPieces;
   middle_ = 0.5 * (a0 + a1);
-  std::vector<double> speed(kPieces + 1, 0), around(kPieces + 1, 0), mixed(1, 0);
+  std::vector<double> speed(kPieces + 1, 0), around(kPieces + 1, 0);
   double turn = 0;
   for (int i = 0; i <= kPieces; ++i)
     for (int j = 0; j < kAcross; ++j) {
@@ -98,8 +98,7 @@ void Chart::make_polar(const ParameterBox& box) {
   const double most = *std::max_element(around.begin(), around.end());
   for (std::size_t i = 1; i < around.size(); ++i) around[i] = std::max(around[i], kLeastAround * most);
   // a cone that is not too sharp is unrolled: its seam is on two sides then
-  const bool is_full =
-      period > 0 && a1 - a0 >= kFullTurn * period && !(turn >= kLeastUnrolled && turn <= kMostTurn);
+  const bool is_full = period > 0 && a1 - a0 >= kFullTurn * period && !(turn >= kLeastUnrolled && turn <= kMostTurn);
   const double rate = is_full ? 2 * std::numbers::pi / period : (turn > 0 ? std::min(turn, kMostTurn) : 1) / (a1 - a0);
   angle_ = (by_v == low ? -1 : 1) * rate;
   // d ln radius = k ds / r, with r the mean radius in space, s the length from the pole and k = dr / ds there

@@ -26,8 +26,9 @@ class RisingTable {
 /// @brief A plane with the parts of a face that have a mild metric there: lengths and angles are about those in space.
 ///
 /// linear: u and v, each stretched to the mean length along it. polar: round a degenerate side, which is the origin;
-/// the angle is that parameter along it, the radius such that the metric of a surface of revolution is the same multiple
-/// in both directions everywhere but for a constant: on a sphere the stereographic projection; a cone is unrolled. Both keep the orientation of (u, v).
+/// the angle is that parameter along it, the radius such that the metric of a surface of revolution is the same
+/// multiple in both directions everywhere but for a constant: on a sphere the stereographic projection; a cone is
+/// unrolled. Both keep the orientation of (u, v).
 class Chart {
  public:
   enum class Pole : std::uint8_t { none, u_low, u_high, v_low, v_high };
@@ -61,12 +62,12 @@ class Chart {
 
   const SmoothSurface& surface_;
   Pole pole_;
-  RisingTable u_, v_;      ///< linear
-  RisingTable radius_;     ///< polar: by the distance of the radial parameter from the pole's
-  double pole_at_ = 0;     ///< the radial parameter there
-  double middle_ = 0;      ///< angular parameter at angle 0
-  double angle_ = 1;       ///< radians a unit of it, with the sign that keeps orientation
-  double smallest_ = 0;    ///< radius that counts as the origin
+  RisingTable u_, v_;    ///< linear
+  RisingTable radius_;   ///< polar: by the distance of the radial parameter from the pole's
+  double pole_at_ = 0;   ///< the radial parameter there
+  double middle_ = 0;    ///< angular parameter at angle 0
+  double angle_ = 1;     ///< radians a unit of it, with the sign that keeps orientation
+  double smallest_ = 0;  ///< radius that counts as the origin
 };
 
 }  // namespace delfront

@@ -14,11 +14,11 @@ constexpr double kRegular = 0.995;     ///< mean quality of a star that is left 
 constexpr double kSmoothAngle = 0.41;  ///< squared sine of 40 degrees: worse angles are not made
 constexpr double kLeastGain = 1e-3;    ///< of a star's mean quality
 constexpr double kRegularHeight = 0.86602540378443865;
-constexpr double kGoal = 0.35;         ///< squared sine of 36 degrees: angles below it are lifted
+constexpr double kGoal = 0.35;  ///< squared sine of 36 degrees: angles below it are lifted
 constexpr int kLiftPasses = 4, kLiftSteps = 10;
-constexpr double kMargin = 1e-9;       ///< flips back and forth are not flips
-constexpr double kFoldCosine = 0.35;   ///< least cosine between triangles that come and those that go
-constexpr double kAgree = 0.5;         ///< cosine between triangles and the surface at their corners: less is not made of more
+constexpr double kMargin = 1e-9;      ///< flips back and forth are not flips
+constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
+constexpr double kAgree = 0.5;  ///< cosine between triangles and the surface at their corners: less is not made of more
 constexpr int kFlipPasses = 6;
 constexpr std::size_t kVerticesPerCancelCheck = 1 << 14;
 

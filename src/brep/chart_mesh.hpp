@@ -35,15 +35,13 @@ class ChartMesh {
   bool try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst = false);
   Star measure(Point p, Point normal) const;
   bool is_positive() const;
-  bool is_inside(TriIndex t) const {
-    return !c_.is_dead(t) && !c_.is_ghost(t) && c_.tri[t].region != kOutside;
-  }
+  bool is_inside(TriIndex t) const { return !c_.is_dead(t) && !c_.is_ghost(t) && c_.tri[t].region != kOutside; }
 
   TriComplex& c_;
   const Chart& chart_;
   VertexIndex first_free_;
-  std::vector<Point> at_, x_, y_;  ///< by vertex: place and tangents along the chart's axes
-  std::vector<bool> is_calm_;      ///< by vertex: regular, and nothing has moved there since
+  std::vector<Point> at_, x_, y_;         ///< by vertex: place and tangents along the chart's axes
+  std::vector<bool> is_calm_;             ///< by vertex: regular, and nothing has moved there since
   std::vector<std::uint8_t> is_changed_;  ///< by vertex: its sides are to be looked at
   std::vector<TriIndex> star_;
   std::vector<VertexIndex> vertices_;

@@ -35,9 +35,9 @@ struct FaceGrid {
   bool is_mapped = false;
   std::string gave_up;  ///< why there are no triangles; empty: there are
   Point gave_up_at;
-  std::string why_direct;           ///< why it is not mapped
-  double largest_distance = 0;      ///< of triangles' middles from the surface
-  double largest_angle = 0;         ///< between normals of triangles and surface, radians
+  std::string why_direct;       ///< why it is not mapped
+  double largest_distance = 0;  ///< of triangles' middles from the surface
+  double largest_angle = 0;     ///< between normals of triangles and surface, radians
 
   void fail(const std::string& why, Point at) {
     if (gave_up.empty()) {

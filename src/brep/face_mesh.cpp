@@ -8,12 +8,12 @@
 namespace delfront {
 namespace {
 
-constexpr double kGoal = 0.345;     ///< squared sine of 36 degrees
+constexpr double kGoal = 0.345;  ///< squared sine of 36 degrees
 constexpr int kRounds = 4, kSweeps = 4, kMoves = 8, kDirections = 8;
-constexpr double kLeastGain = 1e-3;  ///< of a squared sine
+constexpr double kLeastGain = 1e-3;   ///< of a squared sine
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
-constexpr double kAgree = 0.3;       ///< least cosine between triangles and the surface at their corners
-constexpr double kMostLonger = 1.3;  ///< sides that a collapse makes, of the longest there
+constexpr double kAgree = 0.3;        ///< least cosine between triangles and the surface at their corners
+constexpr double kMostLonger = 1.3;   ///< sides that a collapse makes, of the longest there
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 double squared_sine(Point a, Point b, Point c) {

@@ -13,14 +13,14 @@
 namespace delfront {
 namespace {
 
-constexpr int kPiecesPerSide = 4;                           ///< of the border's sides
+constexpr int kPiecesPerSide = 4;                            ///< of the border's sides
 constexpr double kTurnPerCell = 4 * std::numbers::pi / 180;  ///< of normals, along a cell of the lattice
 constexpr int kLeastCells = 24, kMostCells = 300;
 constexpr int kSamples = 32;
 constexpr double kOffset = 0.4371;  ///< of a cell: no line of the lattice is one of the border's
 constexpr double kFlat = 1e-4;      ///< of the squared longest side: areas that are none
 constexpr int kMostFlips = 20;
-constexpr double kRoom = 0.3;       ///< of a cell: between points of the lattice and of the border
+constexpr double kRoom = 0.3;  ///< of a cell: between points of the lattice and of the border
 
 class SupportMaker {
  public:

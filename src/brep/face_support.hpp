@@ -8,7 +8,7 @@ namespace delfront {
 ///
 /// Seams are closed and poles are single points in it. Its border runs through the points of the edges.
 struct FaceSupport {
-  Model model;                                 ///< one patch, no features
+  Model model;                                   ///< one patch, no features
   std::vector<std::array<Point2, 3>> corner_uv;  ///< by triangle, unwrapped
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <unordered_map>
 
@@ -17,11 +18,12 @@
 namespace delfront {
 namespace {
 
-constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
-constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
-constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
-constexpr int kSamples = 17;            ///< each way, to look at a chart
-constexpr double kSamePlace = 1e-9;     ///< of the extent: copies of a seam's points in a polar chart
+constexpr double kMostStretch = 25;  ///< of lengths over directions, in a chart that is used
+constexpr double kMostChange = 3;    ///< of lengths in space over one wanted side, in a chart that is used
+constexpr double kTryPolar = 2.5;    ///< stretch of a linear chart from where a polar one is tried
+constexpr int kSamples = 17;         ///< each way, to look at a chart
+constexpr std::size_t kMostOfLoop = 200;
+constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
 constexpr int kPoleDirections = 8;
 
 /// What a chart asks of lengths in it: M = J^T J / h^2.
@@ -55,8 +57,7 @@ class ChartMetric : public SizeField {
 
  private:
   Metric metric_of(const Chart::Place& place, double h) const {
-    if (is_lowered_)
-      h = size_.lowered(h, largest_curvature(chart_.surface().derivatives(place.uv)), place.at);
+    if (is_lowered_) h = size_.lowered(h, largest_curvature(chart_.surface().derivatives(place.uv)), place.at);
     const double f = 1 / (h * h);
     Metric m;
     m.xx = f * dot(place.x, place.x);
@@ -68,7 +69,7 @@ class ChartMetric : public SizeField {
   Metric metric_at_pole(double h) const {
     double sum = 0;
     for (int k = 0; k < kPoleDirections; ++k) {
-      const double angle = k * 2 * M_PI / kPoleDirections;
+      const double angle = k * 2 * std::numbers::pi / kPoleDirections;
       const Metric m = metric_of(chart_.place({2 * origin_ * std::cos(angle), 2 * origin_ * std::sin(angle)}), h);
       sum += 0.5 * (m.xx + m.yy) / kPoleDirections;
     }
@@ -90,35 +91,47 @@ struct ChartLook {
   Point at;
 };
 
-ChartLook look_at(const Chart& chart, const ParameterBox& box, const WantedSize& size) {
-  ChartLook look;
+/// What is looked at: places all over the box, and on the border, where poles of the surface are not told by a
+/// degenerate side.
+std::vector<Point2> places_to_look_at(const FaceGrid& grid, const FacePart& part, const ParameterBox& box) {
+  std::vector<Point2> places;
   const double margin = 0.5 / kSamples;
-  const auto scale = [](const Chart::Place& p) { return std::sqrt(length(cross(p.x, p.y))); };
   for (int i = 0; i < kSamples; ++i)
     for (int j = 0; j < kSamples; ++j) {
       const double f = margin + double(i) / kSamples, g = margin + double(j) / kSamples;
-      const Point2 uv = {(1 - f) * box.low.x + f * box.high.x, (1 - g) * box.low.y + g * box.high.y};
-      const Point2 xy = chart.to_chart(uv);
-      const Chart::Place place = chart.place(xy);
-      const double stretch = Chart::stretch(place);
-      if (stretch > look.stretch) {
-        look.stretch = stretch;
-        look.at = place.at;
-      }
-      // one wanted side on, but no farther than the part goes
-      const double here = scale(place), h = size.asked().size(place.at);
-      for (int k = 0; k < 4; ++k) {
-        const double ahead = (k % 2 ? -1 : 1) * h / std::max(length(k < 2 ? place.x : place.y), 1e-300);
-        const Point2 to = chart.to_uv(k < 2 ? Point2{xy.x + ahead, xy.y} : Point2{xy.x, xy.y + ahead});
-        if (to.x < box.low.x || to.x > box.high.x || to.y < box.low.y || to.y > box.high.y) continue;
-        const double there = scale(chart.place(chart.to_chart(to)));
-        const double change = std::max(here / there, there / here);
-        if (change > look.change) {
-          look.change = change;
-          if (change > kMostChange) look.at = place.at;
-        }
-      }
+      places.push_back({(1 - f) * box.low.x + f * box.high.x, (1 - g) * box.low.y + g * box.high.y});
     }
+  for (const auto& loop : part.loops)
+    for (std::size_t i = 0; i < loop.size(); i += loop.size() / kMostOfLoop + 1)
+      if (!grid.points[loop[i]].is_pole) places.push_back(grid.points[loop[i]].uv);
+  return places;
+}
+
+ChartLook look_at(const Chart& chart, std::span<const Point2> places, const ParameterBox& box, const WantedSize& size) {
+  ChartLook look;
+  const auto scale = [](const Chart::Place& p) { return std::sqrt(length(cross(p.x, p.y))); };
+  for (const Point2 uv : places) {
+    const Point2 xy = chart.to_chart(uv);
+    const Chart::Place place = chart.place(xy);
+    const double stretch = Chart::stretch(place);
+    if (stretch > look.stretch) {
+      look.stretch = stretch;
+      look.at = place.at;
+    }
+    // one wanted side on, but no farther than the part goes
+    const double bend = largest_curvature(chart.surface().derivatives(place.uv));
+    const double here = scale(place), h = size.lowered(size.asked().size(place.at), bend, place.at);
+    for (int k = 0; k < 4; ++k) {
+      const double ahead = (k % 2 ? -1 : 1) * h / std::max(length(k < 2 ? place.x : place.y), 1e-300);
+      const Point2 to = chart.to_uv(k < 2 ? Point2{xy.x + ahead, xy.y} : Point2{xy.x, xy.y + ahead});
+      if (to.x < box.low.x || to.x > box.high.x || to.y < box.low.y || to.y > box.high.y) continue;
+      const double there = scale(chart.place(chart.to_chart(to)));
+      const double change = std::max(here / there, there / here);
+      if (!(change > look.change)) continue;
+      look.change = change;
+      if (change > kMostChange) look.at = place.at;
+    }
+  }
   return look;
 }
 
@@ -127,7 +140,8 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
                                   const WantedSize& size, FaceGrid& grid) {
   std::optional<Chart> best;
   best.emplace(surface, box, part.pole);
-  ChartLook look = look_at(*best, box, size);
+  const std::vector<Point2> places = places_to_look_at(grid, part, box);
+  ChartLook look = look_at(*best, places, box, size);
   if (part.pole == Chart::Pole::none && (look.stretch > kTryPolar || look.change > kMostChange)) {
     const DegenerateSides at = surface.degenerate_sides();
     const std::pair<bool, Chart::Pole> sides[] = {{at.u_low, Chart::Pole::u_low},
@@ -137,7 +151,7 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
     for (const auto& [is_there, pole] : sides) {
       if (!is_there) continue;
       const Chart polar(surface, box, pole);
-      const ChartLook other = look_at(polar, box, size);
+      const ChartLook other = look_at(polar, places, box, size);
       if (!(other.stretch < look.stretch)) continue;
       look = other;
       best.emplace(surface, box, pole);
@@ -157,11 +171,9 @@ class ChartedPart {
  public:
   ChartedPart(const FacePart& part, const Chart& chart, FaceGrid& grid) : chart_(chart), grid_(grid) {
     domain_.curves.push_back({});
-    for (const auto& loop : part.loops) {
-      if (part.loops.empty()) continue;
+    for (const auto& loop : part.loops)
       for (std::size_t i = 0; i < loop.size(); ++i)
         add_segment(chart_point(loop[i]), chart_point(loop[(i + 1) % loop.size()]));
-    }
   }
 
   void fill(const WantedSize& size, bool is_lowered, const BrepOptions& options, Context& context) {

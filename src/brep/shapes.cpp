@@ -15,8 +15,7 @@ EdgeId add_edge(Brep& brep, const SurfacePointer& surface, Point2 from, Point2 t
                 bool is_degenerate) {
   BrepEdge edge;
   edge.corners = ends;
-  if (!is_degenerate)
-    edge.curve = make_curve_on(surface, make_parameter_line(from, to), {0, 1}, ends[0] == ends[1]);
+  if (!is_degenerate) edge.curve = make_curve_on(surface, make_parameter_line(from, to), {0, 1}, ends[0] == ends[1]);
   brep.edges.push_back(edge);
   return EdgeId(brep.edges.size() - 1);
 }

@@ -4,8 +4,8 @@
 namespace delfront {
 namespace {
 
-constexpr int kSamples = 24;        ///< each way
-constexpr double kTipReach = 0.2;    ///< of a face's extent from its tip: sizes there are not lowered below about that
+constexpr int kSamples = 24;          ///< each way
+constexpr double kTipReach = 0.2;     ///< of a face's extent from its tip: sizes there are not lowered below about that
 constexpr double kSmoothPole = 0.99;  ///< least cosine between normals round a pole that is no tip
 
 /// How far a face's border goes from a place.
@@ -47,8 +47,8 @@ bool WantedSize::is_lowered_on(const SmoothSurface& surface, const ParameterBox&
     std::vector<double> bend;
     for (int j = 0; j < kSamples; ++j) {
       const double x = (i + 0.5) / kSamples, y = (j + 0.5) / kSamples;
-      const SurfaceDerivatives s = surface.derivatives(
-          {box.low.x + x * (box.high.x - box.low.x), box.low.y + y * (box.high.y - box.low.y)});
+      const SurfaceDerivatives s =
+          surface.derivatives({box.low.x + x * (box.high.x - box.low.x), box.low.y + y * (box.high.y - box.low.y)});
       at.push_back(s.at);
       bend.push_back(largest_curvature(s));
     }

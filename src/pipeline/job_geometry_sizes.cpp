@@ -58,7 +58,7 @@ GapSizes gap_wish(const Options& options, const GapOptions& asked, double usual_
   return wish;
 }
 
-/// The surface is kept as given: where it does not hold what is asked of surfaces, that is said (S13).
+/// New surfaces lie on the given one too: where that does not hold what is asked of surfaces, it is said (S13).
 void warn_of_coarse_facets(const Model& model, const CurvatureSizes& wish, Context& context) {
   SurfaceLimits limits;
   if (wish.angle_deg) limits.angle_deg = *wish.angle_deg;
@@ -68,12 +68,12 @@ void warn_of_coarse_facets(const Model& model, const CurvatureSizes& wish, Conte
   const auto warn = [&](const SurfaceAccuracy::Worst& worst, const char* what, double limit) {
     if (worst.num_beyond == 0) return;
     context.warn(
-        fmt::format("{} {} {:.4g}, the worst {:.4g} at {:g} {:g} {:g}: the surface is kept as given; finer "
-                    "facets there would hold it",
+        fmt::format("{} {} {:.4g}, the worst {:.4g} at {:g} {:g} {:g}: the grid's surface is never closer to the "
+                    "true one than the given facets; finer ones there would hold it",
                     worst.num_beyond, what, limit, worst.value, worst.at.x, worst.at.y, worst.at.z));
   };
-  warn(found.angle_deg, "edges of the surface turn by more than the asked degrees,", limits.angle_deg);
-  warn(found.deviation, "facets are farther from the surface they stand for than", limits.deviation);
+  warn(found.angle_deg, "edges of the given surface turn by more than the asked degrees,", limits.angle_deg);
+  warn(found.deviation, "given facets are farther from the surface they stand for than", limits.deviation);
 }
 
 /// Curvature, gaps and lines: of many facets, so sources that say nearly the same are merged.

@@ -41,8 +41,9 @@ std::vector<bool> far_field_patches(const Model& model) {
 }
 
 /// A new surface is looked at as a given one is.
-void regrid(Model& model, const Options& options, const SizeField* asked, Report& report, Context& context) {
-  regrid_as_asked(model, options, asked, report.surface_grid, context);
+void regrid(Model& model, const Options& options, const std::shared_ptr<const SizeField>& asked, Report& report,
+            Context& context) {
+  regrid_as_asked(model, options, *surface_sizes(model, options, asked), report.surface_grid, context);
   const std::size_t turned = report.surface.reoriented;
   report.surface = check_surface(model, context);
   report.surface.reoriented = turned;
@@ -54,8 +55,8 @@ BoundaryGrid recover(Model& model, const Options& options, Report& report, Conte
 }
 
 /// A new surface that cannot be recovered gives way to the given one, which most often can.
-BoundaryGrid regrid_and_recover(Model& model, const Options& options, const SizeField* asked, Report& report,
-                                Context& context) {
+BoundaryGrid regrid_and_recover(Model& model, const Options& options, const std::shared_ptr<const SizeField>& asked,
+                                Report& report, Context& context) {
   const Model given = model;
   const SurfaceReport of_given = report.surface;
   try {
@@ -133,7 +134,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   refuse_invalid(report.surface);
   Prepared prepared;
   prepared.grid = options.surface.method == "keep" ? recover(model, options, report, context)
-                                                   : regrid_and_recover(model, options, asked.get(), report, context);
+                                                   : regrid_and_recover(model, options, asked, report, context);
   if (options.surface.method == "keep") warn_of_coarse_surface(model, options.size, asked.get(), context);
   prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);

@@ -25,6 +25,7 @@
 #include "pipeline/run.hpp"
 #include "pipeline/size_survey.hpp"
 #include "pipeline/surface_job.hpp"
+#include "sizing/asked_sizes.hpp"
 
 namespace delfront {
 
@@ -163,14 +164,18 @@ void write_outputs(Run& run) {
 
 /// A surface alone: to look at it (geometry), or to write it, with its far field (surface).
 void stop_at_surface(Run& run, Model model) {
-  if (run.options.stop_after != "geometry" && run.options.surface.method != "keep") {
-    orient_shells(model, run.context);  // as before gridding, so that both give the same surface
+  std::shared_ptr<const SizeField> size;
+  const bool is_new = run.options.surface.method != "keep";
+  if (run.options.stop_after != "geometry" && (is_new || run.options.output.sizes)) {
+    if (is_new) orient_shells(model, run.context);  // as before gridding, so that both give the same surface
     if (run.far_field.is_valid()) run.options.surface.kept = {run.far_field};
-    const auto asked = build_job_size_field(run.options, model, model.bounding_box(), run.context);
-    regrid_as_asked(model, run.options, asked.get(), run.result.report.surface_grid, run.context);
+    size =
+        surface_sizes(model, run.options, build_job_size_field(run.options, model, model.bounding_box(), run.context));
+    regrid_as_asked(model, run.options, *size, run.result.report.surface_grid, run.context);
   }
   run.result.report.surface = check_surface(model, run.context);
   run.result.mesh = surface_mesh(model);
+  if (run.options.output.sizes && size) add_size_field(run.result.mesh, *size, run.context);
   if (run.options.stop_after == "geometry") {
     if (!run.result.report.surface.can_bound_volume)
       throw InputError("the surface cannot bound a volume; see the findings");

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "sizing/asked_sizes.hpp"
 
@@ -15,7 +18,8 @@ constexpr double kLargestShare = 0.1;  ///< of the diagonal, where sizes are ask
 /// The asked sizes between bounds.
 class BoundedSize : public SizeField {
  public:
-  BoundedSize(const SizeField* asked, double hmin, double hmax) : asked_(asked), hmin_(hmin), hmax_(hmax) {}
+  BoundedSize(std::shared_ptr<const SizeField> asked, double hmin, double hmax)
+      : asked_(std::move(asked)), hmin_(hmin), hmax_(hmax) {}
 
   void sizes(std::span<const Point> at, std::span<double> size) const override {
     std::fill(size.begin(), size.end(), hmax_);
@@ -28,7 +32,7 @@ class BoundedSize : public SizeField {
   double largest() const override { return hmax_; }
 
  private:
-  const SizeField* asked_;
+  std::shared_ptr<const SizeField> asked_;
   double hmin_, hmax_;
 };
 
@@ -56,6 +60,14 @@ double largest_size(const Model& model, const SizeOptions& size, const SizeField
   return size.steeper * kLargestShare * box.diagonal();
 }
 
+/// By patch: keeps its triangles.
+std::vector<bool> kept_patches(const Model& model, const Options& options) {
+  std::vector<bool> is_kept;
+  for (const Patch& patch : model.patches) is_kept.push_back(patch.kind == "farfield");
+  for (const PatchId p : options.surface.kept) is_kept[p.index()] = true;
+  return is_kept;
+}
+
 void warn_of_fallbacks(const SurfaceGridReport& report, Context& context) {
   for (const SurfaceFallback::Kind kind : {SurfaceFallback::Kind::remeshed, SurfaceFallback::Kind::kept}) {
     std::size_t count = 0;
@@ -77,20 +89,22 @@ void warn_of_fallbacks(const SurfaceGridReport& report, Context& context) {
 
 }  // namespace
 
-void regrid_as_asked(Model& model, const Options& options, const SizeField* asked, SurfaceGridReport& report,
+std::shared_ptr<const SizeField> surface_sizes(const Model& model, const Options& options,
+                                               std::shared_ptr<const SizeField> asked) {
+  const double hmin = options.size.hmin ? options.size.hmin->value : 0;
+  const double hmax = std::max(hmin, largest_size(model, options.size, asked.get(), kept_patches(model, options)));
+  return std::make_shared<BoundedSize>(std::move(asked), hmin, hmax);
+}
+
+void regrid_as_asked(Model& model, const Options& options, const SizeField& size, SurfaceGridReport& report,
                      Context& context) {
   if (options.surface.method == "keep" || model.triangles.empty()) return;
   SurfaceOptions how = options.surface;
-  std::vector<bool> is_kept(model.patches.size(), false);
-  for (const PatchId p : how.kept) is_kept[p.index()] = true;
-  for (std::size_t p = 0; p < model.patches.size(); ++p)
-    if (model.patches[PatchId(p)].kind == "farfield") {
-      is_kept[p] = true;
-      how.kept.push_back(PatchId(p));
-    }
-  const double hmin = options.size.hmin ? options.size.hmin->value : 0;
-  const double hmax = std::max(hmin, largest_size(model, options.size, asked, is_kept));
-  model = regrid_surface(model, BoundedSize(asked, hmin, hmax), how, report, context);
+  how.kept.clear();
+  const std::vector<bool> is_kept = kept_patches(model, options);
+  for (std::size_t p = 0; p < is_kept.size(); ++p)
+    if (is_kept[p]) how.kept.push_back(PatchId(p));
+  model = regrid_surface(model, size, how, report, context);
   warn_of_fallbacks(report, context);
 }
 

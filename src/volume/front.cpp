@@ -34,6 +34,7 @@ constexpr std::size_t kFacesPerSlab = 1000, kMostSlabs = 64;
 constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may leave to the next cuts, about
 constexpr double kWorthSlabs = 0.02;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
+constexpr std::size_t kFacesPerShare = 8192;  ///< of the front, that one thread shares out among the slabs
 constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
 constexpr std::size_t kFew = 3;   ///< times so many faces in the front as there are to do: only those near are searched
 constexpr int kPhases = 4;        ///< three axes, then one piece
@@ -124,7 +125,7 @@ class Front {
     for (const std::uint32_t f : waiting_) front_.face(f).tries = 0;
   }
 
-  /// Slots are used again, so a number may stand there twice.
+  /// Slots are used again, so a number may stand there twice. The order stays: it is nearly that of space.
   void keep_live(std::vector<std::uint32_t>& faces) {
     is_listed_.assign(front_.num_slots(), false);
     std::erase_if(faces, [&](std::uint32_t f) {
@@ -191,7 +192,7 @@ class Front {
   }
 
   void run_phase(int phase) {
-    keep_live(active_);
+    std::erase_if(active_, [&](std::uint32_t f) { return !front_.face(f).is_alive; });
     keep_live(live_);  // before the slots of what is gone are handed out again
     const int axis = static_cast<int>((report_.rounds + static_cast<unsigned>(phase)) % 3);
     const std::vector<FrontSlab> slabs = cut_slabs(axis, phase == kPhases - 1);
@@ -202,13 +203,14 @@ class Front {
       while (x >= slabs[i].high) ++i;
       faces[i].push_back(f);
     }
+    share_out_front(slabs);
     std::vector<FrontWorker> workers;
     for (std::size_t i = 0; i < slabs.size(); ++i) {
       workers.emplace_back(front_, size_, *settings_, slabs[i]);
       workers.back().stock = front_.take(faces[i].size());
     }
     parallel_for(context_.threads, slabs.size(),
-                 [&](std::size_t i) { work(workers[i], slabs[i], faces[i], left[i], failed[i]); });
+                 [&](std::size_t i) { work(workers[i], i, faces[i], left[i], failed[i]); });
     active_.clear();
     for (std::size_t i = 0; i < slabs.size(); ++i) {
       FrontWorker& worker = workers[i];
@@ -222,7 +224,24 @@ class Front {
     }
   }
 
-  void work(FrontWorker& worker, const FrontSlab& slab, const std::vector<std::uint32_t>& faces,
+  /// Which faces of the front have a part of which slab. Told before any worker changes its own.
+  void share_out_front(const std::vector<FrontSlab>& slabs) {
+    shares_.resize((live_.size() + kFacesPerShare - 1) / kFacesPerShare);
+    const int axis = slabs[0].axis;
+    parallel_for(context_.threads, shares_.size(), [&](std::size_t s) {
+      shares_[s].assign(slabs.size(), {});
+      const std::size_t end = std::min(live_.size(), (s + 1) * kFacesPerShare);
+      for (std::size_t i = s * kFacesPerShare; i < end; ++i) {
+        const Box box = front_.box(live_[i]);
+        const auto first = std::partition_point(slabs.begin(), slabs.end(),
+                                                [&](const FrontSlab& slab) { return slab.high <= box.low[axis]; });
+        for (auto slab = first; slab != slabs.end() && slab->meets(box); ++slab)
+          shares_[s][static_cast<std::size_t>(slab - slabs.begin())].push_back(live_[i]);
+      }
+    });
+  }
+
+  void work(FrontWorker& worker, std::size_t slab, const std::vector<std::uint32_t>& faces,
             std::vector<std::uint32_t>& left, std::vector<std::uint32_t>& failed) const {
     plant_tree(worker, slab, faces);
     std::size_t seen = 0;
@@ -234,9 +253,8 @@ class Front {
     }
   }
 
-  /// The faces that may be met round these. Other workers change theirs meanwhile: nothing of a face is looked at but
-  /// where it lies before it is known not to be one of those.
-  void plant_tree(FrontWorker& worker, const FrontSlab& slab, const std::vector<std::uint32_t>& faces) const {
+  /// The faces of the slab that may be met round these.
+  void plant_tree(FrontWorker& worker, std::size_t slab, const std::vector<std::uint32_t>& faces) const {
     Box box;
     double margin = 0;
     for (const std::uint32_t f : faces) {
@@ -246,18 +264,19 @@ class Front {
     const Point around{margin, margin, margin};
     box.low = box.low - around;
     box.high = box.high + around;
-    box.low[slab.axis] = std::max(box.low[slab.axis], slab.low);
-    box.high[slab.axis] = std::min(box.high[slab.axis], slab.high);
+    const FrontSlab& own = worker.slab();
+    box.low[own.axis] = std::max(box.low[own.axis], own.low);
+    box.high[own.axis] = std::min(box.high[own.axis], own.high);
     worker.tree.clear(box);
     const bool are_few = kFew * faces.size() < live_.size();
     CellMarks marks(are_few ? faces.size() : 0, margin);
     if (are_few)
       for (const std::uint32_t f : faces) marks.add(front_.box(f));
-    for (const std::uint32_t f : live_) {
-      const Box of_face = front_.box(f);
-      if (!slab.meets(of_face) || !box.overlaps(of_face) || (are_few && !marks.are_near(of_face))) continue;
-      if (front_.face(f).is_alive) worker.add_to_tree(f);
-    }
+    for (const std::vector<std::vector<std::uint32_t>>& share : shares_)
+      for (const std::uint32_t f : share[slab]) {
+        const Box of_face = front_.box(f);
+        if (box.overlaps(of_face) && (!are_few || marks.are_near(of_face))) worker.tree.insert(f, of_face);
+      }
   }
 
   void fill_report() {
@@ -282,9 +301,10 @@ class Front {
   const SizeField& size_;
   Context& context_;
   const FrontSettings* settings_ = nullptr;
-  std::vector<std::uint32_t> waiting_, skipped_, active_;  ///< faces
-  std::vector<std::uint32_t> live_;                        ///< all faces of the front; some that were
-  std::vector<bool> is_listed_;                            ///< scratch of keep_live()
+  std::vector<std::uint32_t> waiting_, skipped_, active_;        ///< faces
+  std::vector<std::uint32_t> live_;                              ///< all faces of the front; some that were
+  std::vector<std::vector<std::vector<std::uint32_t>>> shares_;  ///< of live_, by part of it and slab
+  std::vector<bool> is_listed_;                                  ///< scratch of keep_live()
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;
   FrontCounts counts_;
   FrontReport report_;

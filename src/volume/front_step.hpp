@@ -26,7 +26,7 @@ struct FrontSlab {
   int axis = 0;
   double low = -1e300, high = 1e300;
   bool holds(const Box& box) const { return low <= box.low[axis] && box.high[axis] < high; }
-  /// @brief Whether it has a part of the box; what others may change meanwhile has none.
+  /// @brief Whether it has a part of the box.
   bool meets(const Box& box) const { return low <= box.high[axis] && box.low[axis] < high; }
 };
 
@@ -49,6 +49,8 @@ class FrontWorker {
 
   FrontWorker(FrontStore& front, const SizeField& size, const FrontSettings& settings, const FrontSlab& slab)
       : front_(front), c_(front.complex()), size_(size), set_(settings), slab_(slab), near_(front) {}
+
+  const FrontSlab& slab() const { return slab_; }
 
   /// @brief Faces of the front that may lie near those to come; some that are gone.
   BoxOctree tree;

@@ -3,12 +3,13 @@
 
     test_size_ways.py DELFRONT [--all | --methods front,delaunay] [--write-docs] [NAME ...]
 
-The table is the folder examples/sizes: one job file a row, gridded in the volume and, with the section in place of the
-room, in the plane, by the front, or (--all) by every method of KINDS_OF_GRID. Of the edges that do not lie on a kept
-surface 99 % are 0.5 to 2 times as long as the field asks at their middles (the mean of both ends; where the front in the
-plane is asked for stretched triangles, in the metric); sizes grow no faster than asked along any edge; the estimate is
-near the cells. What cannot be is in IMPOSSIBLE with its reason, which stands in the table. Prints one line a grid;
---all --write-docs puts them into docs/sizes/measured.md.
+The table is the folder examples/sizes: one job file a row, gridded in the volume, on the room's surface and, with the
+section in place of the room, in the plane, by the front, or (--all) by every method of KINDS_OF_GRID. A new surface is
+closed and has the room's topology. Of the edges that do not lie on a kept surface 99 % are 0.5 to 2 times as long as the
+field asks at their middles (the mean of both ends; where the front in the plane is asked for stretched triangles, in the
+metric); sizes grow no faster than asked along any edge; the estimate is near the cells. What cannot be is in IMPOSSIBLE
+with its reason, which stands in the table. Prints one line a grid; --all --write-docs puts them into
+docs/sizes/measured.md.
 """
 import argparse
 import json
@@ -26,7 +27,9 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 EXAMPLES = os.path.join(HERE, "..", "..", "examples", "sizes")
 # What is gridded, as the table calls it: the key of its method, and the methods.
 METHODS = ["front", "front-delaunay", "delaunay"]
-KINDS_OF_GRID = {"volume": ("volume.method", METHODS), "plane": ("planar.method", METHODS)}
+KINDS_OF_GRID = {"volume": ("volume.method", METHODS), "plane": ("planar.method", METHODS),
+                 "surface": ("surface.method", ["front", "delaunay"])}
+EULER = 4  # of the room's surface: walls and a ball
 # How far the estimate, which knows nothing of methods, may be from the cells.
 ESTIMATE_WITHIN = {"front": 0.25, "front-delaunay": 0.15, "delaunay": 0.25}
 IMPOSSIBLE = {}  # (job, what is gridded, method): why
@@ -62,7 +65,7 @@ def share_of_good_edges(path, what, method, slope):
     """Share of edges as long as asked, three percentiles of length/size, and the fastest growth over what is allowed."""
     mesh = meshio.read(path)
     edges = edges_of(mesh, "tetra" if what == "volume" else "triangle")
-    kept = edges_of(mesh, "triangle" if what == "volume" else "line")
+    kept = edges_of(mesh, {"volume": "triangle", "plane": "line", "surface": "none"}[what])
     n = len(mesh.points)
     edges = edges[~np.isin(edges[:, 0] * n + edges[:, 1], kept[:, 0] * n + kept[:, 1])]
     h = mesh.point_data["h"].ravel()
@@ -83,7 +86,9 @@ def run(command, folder):
 def words_of_job(folder, name, what, method):
     """The job file and what is set beside it: the method, and in the plane other inputs."""
     job = [f"{name}.toml", "--set", "output.sizes=true", "--set", f"{KINDS_OF_GRID[what][0]}={method}"]
-    if what == "volume":
+    if what == "surface":
+        job += ["--stop-after", "surface"]
+    if what != "plane":
         return job
     job += ["--set", "input.files=section.poly", "--set", "planar.boundary=split",
             "--set", "boundaries.ball.select=patch_2", "--set", "boundaries.walls.select=patch_1"]
@@ -96,7 +101,22 @@ def words_of_job(folder, name, what, method):
     return job
 
 
+def check_surface(folder, out):
+    """Closed, oriented, of the room's topology."""
+    mesh = meshio.read(os.path.join(folder, out))
+    triangles = np.concatenate([block.data for block in mesh.cells if block.type == "triangle"])
+    n = len(mesh.points)
+    there = np.concatenate([triangles[:, i] * n + triangles[:, (i + 1) % 3] for i in range(3)])
+    back = np.concatenate([triangles[:, (i + 1) % 3] * n + triangles[:, i] for i in range(3)])
+    if len(np.unique(there)) != len(there) or not np.array_equal(np.sort(there), np.sort(back)):
+        return ["the surface is not closed, or sides are used twice in one direction"]
+    euler = len(np.unique(triangles)) - len(there) // 2 + len(triangles)
+    return [] if euler == EULER else [f"Euler's number is {euler} instead of {EULER}"]
+
+
 def check_by_checker(folder, out, what):
+    if what == "surface":
+        return check_surface(folder, out)
     checker = [sys.executable, os.path.join(HERE, "run_checker.py"), out]
     if what == "volume":
         checker += ["--surface", "room.stl", "--keep-surface"]
@@ -113,6 +133,19 @@ def estimated_cells(delfront, job, folder):
         return None, [f"estimate: exit {code}: {said.strip()}"]
     with open(os.path.join(folder, "guess.json"), encoding="utf-8") as file:
         return json.load(file)["estimate"]["cells"], []
+
+
+def compare_with_estimate(delfront, folder, job, report, method):
+    """Cells, the estimate over them, what is wrong."""
+    cells = report["quality"]["num_cells"]
+    estimate, wrong = estimated_cells(delfront, job, folder)
+    if wrong:
+        return cells, "", wrong
+    if report["front"]["gave_up"]:
+        wrong.append(f"the front gave up: {report['front']['gave_up']}")
+    if abs(estimate / cells - 1) > ESTIMATE_WITHIN[method]:
+        wrong.append(f"estimate {estimate:.0f} of {cells} cells")
+    return cells, f"{estimate / cells:.3f}", wrong
 
 
 def check_grid(delfront, folder, name, what, method, rows):
@@ -132,17 +165,16 @@ def check_grid(delfront, folder, name, what, method, rows):
         wrong.append(f"sizes grow {growth:.4f} times as fast as allowed")
     if share < 0.99:
         wrong.append(f"only {100 * share:.2f} % of the edges are as long as asked")
-    estimate, failure = estimated_cells(delfront, job, folder)
-    if failure:
-        return wrong + failure
     with open(os.path.join(folder, "grid.json"), encoding="utf-8") as file:
         report = json.load(file)
-    if report["front"]["gave_up"]:
-        wrong.append(f"the front gave up: {report['front']['gave_up']}")
-    cells = report["quality"]["num_cells"]
-    if abs(estimate / cells - 1) > ESTIMATE_WITHIN[method]:
-        wrong.append(f"estimate {estimate:.0f} of {cells} cells")
-    rows.append(f"| {name} | {what} | {method} | {cells:,} | {estimate / cells:.3f} | {100 * share:.3f} % | "
+    if what == "surface":
+        cells, ratio = report["surface_grid"]["triangles"], ""
+        if report["surface_grid"]["fallbacks"]:
+            wrong.append(f"pieces without a front: {report['surface_grid']['fallbacks']}")
+    else:
+        cells, ratio, failure = compare_with_estimate(delfront, folder, job, report, method)
+        wrong += failure
+    rows.append(f"| {name} | {what} | {method} | {cells:,} | {ratio} | {100 * share:.3f} % | "
                 f"{spread[0]:.2f} | {spread[1]:.2f} | {spread[2]:.2f} | {growth:.3f} |")
     print(rows[-1], flush=True)
     return wrong
@@ -150,13 +182,14 @@ def check_grid(delfront, folder, name, what, method, rows):
 
 HEAD = """# Sizes: asked for and got
 
-Written by `tests/external/test_size_ways.py DELFRONT --all --write-docs`: each job of `examples/sizes`, in the volume and
-(with the section in place of the room) in the plane, by every method; every grid passed the independent checker.
+Written by `tests/external/test_size_ways.py DELFRONT --all --write-docs`: each job of `examples/sizes`, in the volume,
+(with the section in place of the room) in the plane, and on the room's surface gridded anew, by every method; every grid
+of the first two passed the independent checker, every surface is closed and has the room's topology.
 
 - **estimate**: cells that `delfront estimate` gave, over those that the grid has. It knows nothing of methods: it is fitted
   to `front-delaunay`.
 - **edges**: share of the edges, but for those on a kept surface, of 0.5 to 2 times the wanted length; percentiles of that
-  ratio. Where the front in the plane is asked for stretched triangles (s04), lengths are those in the metric.
+  ratio (on a surface, which is kept in the volume, of all edges). Where the front in the plane is asked for stretched triangles (s04), lengths are those in the metric.
 - **growth**: the fastest growth of the wanted size along any edge, over what the job allows.
 - A job that a method cannot do has the reason in place of its figures.
 
@@ -196,7 +229,7 @@ def main():
         every = make_jobs(folder)
         for name in options.names or every:
             for what, (_, methods) in KINDS_OF_GRID.items():
-                for method in methods if options.all else options.methods.split(","):
+                for method in [m for m in methods if options.all or m in options.methods.split(",")]:
                     for reason in check_grid(delfront, folder, name, what, method, rows):
                         print(f"{name} {what} {method} FAILED: {reason}", flush=True)
                         failed += 1

@@ -52,7 +52,7 @@ inline std::array<std::array<Point, 4>, 4> wavy_patch(const SpaceFrame& frame = 
 struct Shape {
   std::string name;
   Brep brep;
-  double h;         ///< for about 1500 triangles
+  double h;          ///< for about 1500 triangles
   double low, high;  ///< x that grading runs over
   long euler;
   bool is_closed;
@@ -70,8 +70,7 @@ inline std::vector<Shape> all_shapes(SpaceFrame frame = {}, double scale = 1) {
   all.push_back({"cone", make_cone(frame, kPi / 6, 2 * s), 0.1 * s, -1.2 * s, 1.2 * s, 2, true});
   all.push_back({"bicubic", make_bicubic(wavy_patch(frame, s)), 0.13 * s, 0, 3.3 * s, 1, false});
   // trimmed: half of a sphere between its poles, a cap round a pole, a part without one, with a hole
-  all.push_back(
-      {"half sphere", make_rectangle_on(sphere, {{0, -kPi / 2}, {kPi, kPi / 2}}), 0.1 * s, -s, s, 1, false});
+  all.push_back({"half sphere", make_rectangle_on(sphere, {{0, -kPi / 2}, {kPi, kPi / 2}}), 0.1 * s, -s, s, 1, false});
   all.push_back({"cap", make_rectangle_on(sphere, {{0, 0.4}, {2 * kPi, kPi / 2}}), 0.07 * s, -s, s, 1, false});
   Brep holed = make_bicubic(wavy_patch(frame, s));
   cut_hole(holed, face_0(), {0.5, 0.45}, 0.2, 0.15);

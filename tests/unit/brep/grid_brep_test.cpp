@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "brep_fixtures.hpp"
-
 #include "delfront/errors.hpp"
 #include "support/errors.hpp"
 
@@ -85,22 +84,24 @@ TEST(GridBrep, HalfOfAPatchUnderItsDiagonal) {
 }
 
 TEST(GridBrep, AMappingThatIsTooBadIsGriddedDirectly) {
-  // lines of u and v run nearly along each other at a corner: lengths differ by over 100 with the direction
+  // a triangle as a patch of four sides: at the corner amid the base u and v run against each other
   std::array<std::array<Point, 4>, 4> b;
+  const double squares[] = {0, 0, 1.0 / 3, 1};  // Bezier points of t^2
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j) {
       const double u = double(i) / 3, v = double(j) / 3;
-      b[i][j] = {u + v, 0.01 * (v - u) + u * v * (v - u), 0.2 * u * v};
+      b[i][j] = {u - v, 0.001 * (u + v) + u * v, 0.2 * (squares[i] - 2 * u * v + squares[j])};  // z = x^2 / 5
     }
-  const SurfacePointer surface = make_bicubic_surface(b);
-  const Brep brep = make_rectangle_on(surface, {{0.1, 0.2}, {0.5, 0.9}});
-  const LinearSize size(0.02, 1, {}, 0, 1);
+  const Brep brep = make_bicubic(b);
+  const LinearSize size(0.05, 1, {}, 0, 1);
   const Gridded made = grid(brep, size);
   EXPECT_FALSE(made.report.faces[0].is_mapped);
   expect_mentions(made.report.faces[0].why, {"stretches"});
   EXPECT_EQ(topology_of(made.model).euler, 1);
   EXPECT_LT(farthest_from_entity(made, brep), 1e-12);
-  EXPECT_GT(worst_agreement(made, brep), 0.3);
+  EXPECT_GT(worst_agreement(made, brep), 0.9);
+  EXPECT_GT(smallest_angle(made.model), 20);
+  EXPECT_GE(share_of_right_lengths(made.model, size), 0.9);
 }
 
 TEST(GridBrep, TurnedAndScaledCopiesHaveTheSameCounts) {
@@ -170,6 +171,47 @@ TEST(GridBrep, CornersCurvesAndPatchesAreNamed) {
   ASSERT_EQ(cone.model.corners.size(), 1u);
   EXPECT_EQ(cone.model.corner_names[0], "tip");
   EXPECT_EQ(cone.model.points[cone.model.corners[0]], (Point{0, 0, 0}));
+}
+
+TEST(GridBrep, FacesBesideEachOtherShareTheirEdges) {
+  // two halves of a sphere between its poles, the second's surface turned inside out
+  const SurfacePointer sphere = make_sphere_surface({}, 1);
+  SpaceFrame mirrored;
+  mirrored.z = {0, 0, -1};
+  const SurfacePointer inside_out = make_sphere_surface(mirrored, 1);
+  Brep brep = make_rectangle_on(sphere, {{0, -kPi / 2}, {kPi, kPi / 2}});
+  const auto& loop = brep.faces[face_0()].loops[0];  // south pole, up at pi, north pole, down at 0
+  BrepFace second;
+  second.surface = inside_out;
+  second.is_reversed = true;
+  // in its parameters: longitude from pi to 2 pi, latitude against the first's
+  const auto line = [](double u0, double v0, double u1, double v1) { return make_parameter_line({u0, v0}, {u1, v1}); };
+  const double q = kPi / 2;
+  second.loops = {{BrepUse{loop[2].edge, line(kPi, -q, 2 * kPi, -q), false},
+                   BrepUse{loop[3].edge, line(2 * kPi, q, 2 * kPi, -q), true},
+                   BrepUse{loop[0].edge, line(2 * kPi, q, kPi, q), false},
+                   BrepUse{loop[1].edge, line(kPi, q, kPi, -q), false}}};
+  brep.faces[face_0()].name = "first";
+  second.name = "second";
+  brep.faces.push_back(second);
+  const LinearSize size(0.1, 4, {}, -1, 1);
+  const Gridded made = grid(brep, size, {}, 2);
+  expect_good({"halves", brep, 0.1, -1, 1, 2, true}, made, size, 30);
+  EXPECT_EQ(made.model.patches.size(), 2u);
+  EXPECT_EQ(made.model.curves.size(), 2u);
+  EXPECT_EQ(made.model.corners.size(), 2u);
+}
+
+TEST(GridBrep, AReversedShellPointsInwards) {
+  Brep brep = make_torus({}, 2, 0.6);
+  brep.faces[face_0()].is_reversed = true;
+  const LinearSize size(0.2, 1, {}, 0, 1);
+  const Gridded made = grid(brep, size);
+  Context context;
+  const SurfaceReport look = check_surface(made.model, context);
+  ASSERT_EQ(look.components.size(), 1u);
+  EXPECT_NEAR(look.components[0].signed_volume, -2 * kPi * kPi * 2 * 0.36, 0.3);
+  EXPECT_GT(worst_agreement(made, brep), 0.3);
 }
 
 TEST(GridBrep, AreaAndVolumeConvergeWithTheSquareOfTheSize) {

@@ -96,10 +96,10 @@ TEST(Shapes, PlacesAreFoundAgainFromAStartNearBy) {
 TEST(Shapes, DerivativesOfCurvesAreTheirDifferences) {
   const SpaceFrame f = odd_frame();
   const SurfacePointer torus = make_torus_surface(f, 2, 0.5);
-  const std::vector<CurvePointer> curves = {
-      make_line({1, 2, 3}, {-1, 0, 5}), make_ellipse(f, 2, 0.5), make_cubic({Point{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {3, 0, 2}}),
-      make_curve_on(torus, make_parameter_ellipse({1, 2}, 0.5, 0.9), {0, 1}),
-      make_curve_on(torus, make_parameter_line({1, 2}, {3, 7}), {0, 1})};
+  const std::vector<CurvePointer> curves = {make_line({1, 2, 3}, {-1, 0, 5}), make_ellipse(f, 2, 0.5),
+                                            make_cubic({Point{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {3, 0, 2}}),
+                                            make_curve_on(torus, make_parameter_ellipse({1, 2}, 0.5, 0.9), {0, 1}),
+                                            make_curve_on(torus, make_parameter_line({1, 2}, {3, 7}), {0, 1})};
   for (const CurvePointer& curve : curves)
     for (double t = 0.05; t < 1; t += 0.1) {
       const double d = 1e-5;
@@ -124,7 +124,8 @@ TEST(EdgePoints, EqualPartsOfTheIntegralAndSymmetric) {
     EXPECT_NEAR(t[i], 1 - t[t.size() - 1 - i], 1e-12);
     double along = 0;
     for (int k = 0; k < 100; ++k)
-      along += distance(cubic->at(t[i] + (t[i + 1] - t[i]) * k / 100), cubic->at(t[i] + (t[i + 1] - t[i]) * (k + 1) / 100));
+      along +=
+          distance(cubic->at(t[i] + (t[i + 1] - t[i]) * k / 100), cubic->at(t[i] + (t[i + 1] - t[i]) * (k + 1) / 100));
     shortest = std::min(shortest, along);
     longest = std::max(longest, along);
   }
