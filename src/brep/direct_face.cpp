@@ -16,6 +16,8 @@
 namespace delfront {
 namespace {
 
+constexpr double kShortShare = 0.8;  ///< of the size: sides of the border that lower sizes round them
+constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr double kSmoothPole = 0.8;  ///< least cosine between normals at a pole that say something
 
 /// The loops as the front's border: copies of a seam's points are one, a seam is run both ways.
@@ -71,6 +73,22 @@ class BorderMaker {
   std::unordered_map<std::uint32_t, std::uint32_t> local_;
 };
 
+/// Bends that edges were divided for are not all known to the front's sizes: they grow from the border's.
+void lower_near_short_sides(const FaceGrid& grid, WorkingSize& size, Context& context) {
+  BoundarySizes sizes;
+  sizes.growth = kGrowth;
+  for (const auto& loop : grid.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const FacePoint &a = grid.points[loop[i]], &b = grid.points[loop[(i + 1) % loop.size()]];
+      const double side = distance(a.at, b.at);
+      const Point middle = 0.5 * (a.at + b.at);
+      if (a.vertex == b.vertex || !(side < kShortShare * size.size(middle))) continue;
+      sizes.points.push_back(middle);
+      sizes.size.push_back(side);
+    }
+  if (!sizes.points.empty()) size.lower(sizes, context);
+}
+
 Point2 uv_on_support(const FaceSupport& support, std::uint32_t t, Point p) {
   const auto& v = support.model.triangles[TriangleId(std::size_t(t))];
   const Point a = support.model.points[v[0]], b = support.model.points[v[1]], c = support.model.points[v[2]];
@@ -101,7 +119,8 @@ void grid_directly(const Brep& brep, const BrepFace& face, const Array<EdgeId, E
   quiet.cancel = context.cancel;
   try {
     const FaceSupport fine = make_face_support(brep, face, edges, quiet);
-    const WorkingSize working(size.asked(), build_bend_guard(fine.model, size.asked(), quiet));
+    WorkingSize working(size.asked(), build_bend_guard(fine.model, size.asked(), quiet));
+    lower_near_short_sides(grid, working, quiet);
     const SurfaceParts parts(fine.model, working, quiet);
     if (parts.regions.size() != 1)
       return grid.fail(fmt::format("its loops bound {} parts", parts.regions.size()), grid.points[0].at);
