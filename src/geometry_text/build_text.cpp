@@ -43,7 +43,7 @@ class TextBuilder {
     if (brep_.faces.empty())
       throw InputError(file_ + " has no faces: add a [[face]], or a [[shape]] such as type = \"sphere\", radius = 1");
     brep_.tolerance = text_.tolerance;
-    check_brep(brep_);
+    at_line({}, "the geometry", "", [&] { check_brep(brep_); });
     return std::move(brep_);
   }
 
