@@ -43,7 +43,13 @@ std::vector<double> knots_through(const std::vector<double>& at, std::size_t deg
   return knots;
 }
 
+/// A row that is one point stays one, to the bit: a pole.
+bool is_one_point(const std::vector<Point4>& row) {
+  return std::all_of(row.begin(), row.end(), [&](const Point4& p) { return (p == row[0]).all(); });
+}
+
 void solve_open(const std::vector<double>& at, const KnotLine& line, std::vector<Point4>& values) {
+  if (is_one_point(values)) return;
   const std::size_t n = at.size(), p = std::size_t(line.degree());
   std::vector<std::vector<double>> rows(n, std::vector<double>(2 * kBand + 1, 0));
   for (std::size_t i = 0; i < n; ++i) {
@@ -60,6 +66,7 @@ void solve_open(const std::vector<double>& at, const KnotLine& line, std::vector
 
 /// Periodic: three diagonals and two corners, which Sherman's and Morrison's formula takes apart.
 void solve_periodic(const std::vector<double>& at, const KnotLine& line, std::vector<Point4>& values) {
+  if (is_one_point(values)) return;
   const std::size_t n = values.size();
   std::vector<std::vector<double>> rows(n, std::vector<double>(2 * kBand + 1, 0));
   for (std::size_t i = 0; i < n; ++i) {

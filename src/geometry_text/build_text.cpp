@@ -43,7 +43,10 @@ class TextBuilder {
     if (brep_.faces.empty())
       throw InputError(file_ + " has no faces: add a [[face]], or a [[shape]] such as type = \"sphere\", radius = 1");
     brep_.tolerance = text_.tolerance;
-    at_line({}, "the geometry", "", [&] { check_brep(brep_); });
+    at_line({}, "the geometry", "", [&] {
+      check_lengths();
+      check_brep(brep_);
+    });
     return std::move(brep_);
   }
 
@@ -101,6 +104,28 @@ class TextBuilder {
         box.add(curve.curve->at(curve.range[0] + (curve.range[1] - curve.range[0]) * i / kSamples));
     reach_ = box.is_empty() ? 1 : box.diagonal() + length(box.centre());
     tolerance_ = std::max(text_.tolerance, kShare * box.diagonal());
+  }
+
+  /// Sides of whole surfaces that are nearly a point are as bad as edges that are.
+  void check_lengths() const {
+    Box all;
+    for (const BrepEdge& edge : brep_.edges)
+      for (int i = 0; i <= kSamples && !edge.is_degenerate(); ++i) all.add(place_on(edge, i));
+    for (std::size_t e = 0; e < brep_.edges.size(); ++e) {
+      const BrepEdge& edge = brep_.edges[EdgeId(e)];
+      if (edge.is_degenerate()) continue;
+      Box own;
+      for (int i = 0; i <= kSamples; ++i) own.add(place_on(edge, i));
+      if (own.diagonal() > std::max(text_.tolerance, kShare * all.diagonal())) continue;
+      throw InputError(
+          fmt::format("edge {}{} at ({:g}, {:g}, {:g}) has no length; leave it out, or make a pole of it: "
+                      "control points that are exactly the same",
+                      e + 1, edge.name.empty() ? "" : " ('" + edge.name + "')", own.low.x, own.low.y, own.low.z),
+          {{own.low, {std::uint32_t(e)}}});
+    }
+  }
+  static Point place_on(const BrepEdge& edge, int i) {
+    return edge.curve->at(edge.range[0] + (edge.range[1] - edge.range[0]) * i / kSamples);
   }
 
   /// The corner at a place, made where there is none.

@@ -121,8 +121,11 @@ class LoopPlacer {
     const Point2 begin = end_of(made_.front(), true), end = end_of(made_.back(), false);
     const Point2 by = follow(end, parts_.back(), parts_.front(), begin);
     const double period_u = surface_.period()[0], period_v = surface_.period()[1];
-    if ((period_u > 0 && std::abs(by.x) > kSame * period_u) || (period_v > 0 && std::abs(by.y) > kSame * period_v)) {
-      at_ = surface_.at(end);
+    const Point from = surface_.at(end), to = surface_.at(begin);
+    const bool meets = distance(from, to) <= kSame * (length(from) + length(to));
+    if (meets &&
+        ((period_u > 0 && std::abs(by.x) > kSame * period_u) || (period_v > 0 && std::abs(by.y) > kSame * period_v))) {
+      at_ = from;
       return "the loop runs once round the surface and does not come back; add a seam, an edge that is used twice: "
              "[\"low\", \"seam\", \"-high\", \"-seam\"]";
     }
