@@ -9,6 +9,7 @@
 #include <fstream>
 #include <new>
 
+#include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/geometry_text.hpp"
 #include "delfront/io.hpp"
@@ -147,14 +148,28 @@ void set_boundaries(Run& run, Model& model) {
   }
 }
 
+/// What can be asked of triangles to look at: not their curvature, the surfaces' own counts; nothing on what has no
+/// name yet, such as the far field.
+Options options_for_looks(const Options& options, const Model& model) {
+  Options result = options;
+  result.size.curvature = result.size.angle = 0;
+  result.size.deviation.reset();
+  std::vector<std::string> names = model.corner_names;
+  for (const Patch& patch : model.patches) names.push_back(patch.name);
+  for (const Curve& curve : model.curves) names.push_back(curve.name);
+  std::erase_if(result.size.on, [&](const SizeOnOptions& on) {
+    return std::none_of(names.begin(), names.end(),
+                        [&](const std::string& name) { return matches_pattern(name, on.name); });
+  });
+  return result;
+}
+
 /// Smooth geometry gridded to the sizes asked for; with levels the final sizes are those of the true geometry.
 void grid_smooth(Run& run, Model& model) {
   const Options& options = run.options;
-  Options without = options;  // the surfaces' own curvature counts, not that of triangles to look at
-  without.size.curvature = without.size.angle = 0;
-  without.size.deviation.reset();
+  apply_boundaries(boundaries_of_input(options), model);  // sizes are asked for on their names
   const std::shared_ptr<const SizeField> asked =
-      build_job_size_field(without, model, model.bounding_box(), run.context);
+      build_job_size_field(options_for_looks(options, model), model, model.bounding_box(), run.context);
   std::vector<NamedMesh> fine = run.inputs;
   for (const GeometryInput& smooth : run.smooth) {
     std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, options, asked, run.context);
