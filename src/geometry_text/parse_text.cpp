@@ -10,6 +10,7 @@
 #include <initializer_list>
 
 #include "base/nearest_name.hpp"
+#include "base/toml_letters.hpp"
 #include "delfront/errors.hpp"
 #include "geometry_text/fields.hpp"
 #include "io/source.hpp"
@@ -35,7 +36,7 @@ class Reader {
   template <class T>
   void required(const char* key, T& value) {
     const toml::node* node = get(key);
-    if (!node) fail(table_, fmt::format("{} is missing", key));
+    if (!node) fail_missing(key);
     read(*node, key, value);
   }
   template <class T>
@@ -63,6 +64,14 @@ class Reader {
   static std::string meant(const std::string& wrong, const std::vector<std::string>& known) {
     const std::string near = nearest_name(wrong, known);
     return near.empty() ? "" : fmt::format(" (did you mean {}?)", near);
+  }
+  /// Misspelt, most likely, where there is something like it.
+  [[noreturn]] void fail_missing(const std::string& key) const {
+    for (const auto& [other, node] : table_)
+      if (std::find(known_.begin(), known_.end(), other.str()) == known_.end() &&
+          !meant(std::string(other.str()), {key}).empty())
+        fail(node, fmt::format("there is no key '{}'; did you mean {}?", std::string(other.str()), key));
+    fail(table_, fmt::format("{} is missing", key));
   }
   [[noreturn]] void wants(const toml::node& node, const char* key, const char* wanted) const {
     fail(node, fmt::format("{} takes {}", key, wanted));
@@ -163,6 +172,8 @@ bool is_geometry_file(const std::string& path) {
 }
 
 GeometryText parse_geometry(const std::string& text, const std::string& file) {
+  if (const int line = find_stray_letter(text); line > 0)
+    throw InputError(fmt::format("{}:{}: not valid TOML: a letter outside of ASCII; put quotes round it", file, line));
   toml::table table;
   try {
     table = toml::parse(text);
