@@ -20,6 +20,8 @@ TEST(TomlLetters, ElsewhereTheirLineIsFound) {
   EXPECT_EQ(find_stray_letter("a = \"é\"\nb = 1 é\n"), 2);
   EXPECT_EQ(find_stray_letter("a = '\\'\nb = 'é'\n\nü"), 4);
   EXPECT_EQ(find_stray_letter("a = \"\"\"\n\\\"\"\"\n\"\"\"\xA0"), 3);
+  EXPECT_EQ(find_stray_letter("a = 1\n[\"\"\"b = \\ﻳ\\\\]\n"), 2);  // found by fuzzing
+  EXPECT_EQ(find_stray_letter("a = \"\"\"b\\\n  é\"\"\""), 2);
   EXPECT_EQ(find_stray_letter("# é\n\x80"), 2);
 }
 
