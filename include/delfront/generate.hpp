@@ -42,14 +42,15 @@ struct RefineReport {
   KernelCounts kernel;
 };
 
-/// @brief What an advancing front did (F1-F17), in the plane or in the volume.
+/// @brief What an advancing front did (F1-F17), in the plane or in the volume. Embedded edges and points are in its
+/// grid; those that no sweep reached are in the cavities that are closed by constrained Delaunay.
 struct FrontReport {
   std::size_t sides_processed = 0;  ///< edges or faces of the front, some more than once
   std::size_t cells = 0, points = 0;
   std::size_t rounds = 0, sweeps = 0;
   std::size_t sides_left = 0;          ///< by the last sweep
   std::size_t cavities = 0;            ///< closed ones that they made
-  std::size_t cells_emptied = 0;       ///< round these, to be filled anew ...
+  std::size_t cells_emptied = 0;       ///< round these and embedded edges in them, to be filled anew ...
   std::size_t cells_refilled = 0;      ///< ... by cells to one point in each
   std::size_t cavities_left = 0;       ///< even then, closed by constrained Delaunay ...
   std::size_t closed_by_delaunay = 0;  ///< ... with so many cells

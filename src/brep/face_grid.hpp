@@ -51,8 +51,9 @@ struct FaceGrid {
 FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges);
 
 /// @brief Fill a face in charts of its parameter plane (see chart.hpp). Says in gave_up why it could not.
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, FaceGrid& grid,
-                 Context& context);
+/// @param takes_any  charts are not refused for being far from lengths in space
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, bool takes_any,
+                 FaceGrid& grid, Context& context);
 
 /// @brief Fill a face by the front on discrete surfaces, over a fine triangulation of it; new points are put on the
 /// face's surface.

@@ -89,25 +89,26 @@ class BrepGridder {
     return sizes;
   }
 
+  /// Mapped, else directly in space, else in charts that are far from lengths in space.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
-    const double most_angle = options_.normal_angle_deg * kDegree;
     FaceGrid& grid = grids_[f];
     const FaceGrid border = make_face_border(brep_, face, edges_);
     const std::vector<std::uint64_t> kept_sides = kept_sides_of(border);
-    grid = border;
-    if (options_.method != BrepOptions::Method::direct) {
-      grid_mapped(face, wanted_, options_, grid, context_);
+    const auto fill = [&](const auto& gridder) {
+      grid = border;
+      gridder();
       lift_small_angles(*face.surface, kept_sides, grid);
-      check_face_grid(face, most_angle, grid);
-      if (grid.gave_up.empty() || options_.method == BrepOptions::Method::mapped) return;
-    }
-    const std::string why = grid.gave_up.empty() ? "asked for" : grid.gave_up;
-    grid = border;
-    grid.why_direct = why;
-    grid_directly(brep_, face, edges_, wanted_, grid, context_);
-    lift_small_angles(*face.surface, kept_sides, grid);
-    check_face_grid(face, most_angle, grid);
+      check_face_grid(face, options_.normal_angle_deg * kDegree, grid);
+      return grid.gave_up.empty();
+    };
+    const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
+    if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
+    if (options_.method == BrepOptions::Method::mapped) return;
+    const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
+    const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
+    if (!is_done && options_.method == BrepOptions::Method::choose) fill([&] { map(true); });
+    if (!grid.is_mapped) grid.why_direct = why;
   }
 
   void lower_at(Point at) {

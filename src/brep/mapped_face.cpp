@@ -137,7 +137,7 @@ ChartLook look_at(const Chart& chart, std::span<const Point2> places, const Para
 
 /// Linear, or polar round the part's pole, or round one that it has no part in where that is better.
 std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
-                                  const WantedSize& size, FaceGrid& grid) {
+                                  const WantedSize& size, bool takes_any, FaceGrid& grid) {
   std::optional<Chart> best;
   best.emplace(surface, box, part.pole);
   const std::vector<Point2> places = places_to_look_at(grid, part, box);
@@ -157,6 +157,7 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
       best.emplace(surface, box, pole);
     }
   }
+  if (takes_any) return best;
   if (look.stretch > kMostStretch)
     grid.fail(fmt::format("the mapping stretches lengths by {:.3g} in one direction over another", look.stretch),
               look.at);
@@ -261,12 +262,12 @@ class ChartedPart {
 
 }  // namespace
 
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, FaceGrid& grid,
-                 Context& context) {
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, bool takes_any,
+                 FaceGrid& grid, Context& context) {
   try {
     for (const FacePart& part : find_parts(face, size, grid)) {
       const ParameterBox box = box_of(grid, part);
-      const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, grid);
+      const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, takes_any, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
       charted.fill(size, size.is_lowered_on(*face.surface, box), options, context);

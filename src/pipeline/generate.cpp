@@ -26,6 +26,15 @@ void give_back_free_memory() {
 #endif
 }
 
+/// Cells that are stretched as asked have small angles, which improvement would undo.
+void improve(TetComplex& complex, const SizeField& size, const Options& options, Report& report, Context& context) {
+  if (!options.improve.enabled) return;
+  if (makes_stretched_cells(options, &size) && report.front.gave_up.empty())
+    context.warn("the sizes ask for stretched cells: improvement, which goes by angles, was left out");
+  else
+    report.improve = improve_complex(complex, size, options.improve, context);
+}
+
 }  // namespace
 
 Outcome generate(Model model, const Options& all_options, Context& context, std::shared_ptr<const SizeField> asked,
@@ -39,7 +48,8 @@ Outcome generate(Model model, const Options& all_options, Context& context, std:
   if (is_new_surface && !geometry) geometry = &given;
   asked = coarse_sizes(std::move(asked), all_options, model.bounding_box(), context);
   Prepared prepared = prepare_volume(model, options, std::move(asked), report, context);
-  refuse_too_many_cells(prepared, options.size, all_options.refine.levels, context);
+  if (!makes_stretched_cells(options, prepared.size.get()))  // least sizes say little about stretched cells
+    refuse_too_many_cells(prepared, options.size, all_options.refine.levels, context);
   CoarseLimit limit(context, all_options, false);
   auto [grid, size] = std::move(prepared);
   const bool is_front = options.volume.method == "front";
@@ -47,7 +57,7 @@ Outcome generate(Model model, const Options& all_options, Context& context, std:
   if (!is_front || !report.front.gave_up.empty())
     report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();
-  if (options.improve.enabled) report.improve = improve_complex(grid.complex, *size, options.improve, context);
+  improve(grid.complex, *size, options, report, context);
   if (!all_options.output.sizes) size.reset();
   give_back_free_memory();
   outcome.mesh = to_mesh(std::move(grid), model, context.threads);

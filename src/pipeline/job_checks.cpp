@@ -152,10 +152,11 @@ static void check_sizes(const Options& options) {
                       "there is no background grid; name one: size.background.file");
   const SolutionFileOptions& solution = options.size.solution;
   if (solution.file.empty()) return;
-  if (solution.stretched)
+  if (solution.stretched && options.volume.method != "front" && options.planar.method != "front")
     throw usage_error(options, "size.solution.stretched",
-                      "the methods of this version make no stretched cells, and cells as small as their least size "
-                      "would be many times those asked for; leave it out");
+                      "only the front makes stretched cells, and cells as small as their least size would be many "
+                      "times those asked for; leave it out, or ask for volume.method (in the plane planar.method) = "
+                      "\"front\"");
   if (solution.indicator == "hessian" && solution.complexity == 0)
     throw UsageError(place_of_key(options, "size.solution.file") +
                      "size.solution.complexity is missing: how fine the grid is to be, about a tenth of the wanted "

@@ -206,10 +206,11 @@ FieldPointer build_job_size_field(const Options& options, const Model& model, co
   std::erase(parts, nullptr);
   if (parts.empty()) return nullptr;
   FieldPointer field = combine_size_fields(std::move(parts), 0, std::numeric_limits<double>::infinity());
-  if (!field->is_isotropic())
+  const bool is_front = model.triangles.empty() ? options.planar.method == "front" : options.volume.method == "front";
+  if (!field->is_isotropic() && !is_front)
     context.warn(
-        "stretched cells are asked for: the methods of this version make none, cells get the least of the "
-        "sizes in all directions");
+        "stretched cells are asked for: only the front makes them (volume.method, planar.method = \"front\"), with "
+        "other methods cells get the least of the sizes in all directions");
   return options.size.adaptive.cells > 0 ? keep_on_grid(options, *field, domain, growth, context) : field;
 }
 

@@ -74,23 +74,50 @@ BoundaryGrid regrid_and_recover(Model& model, const Options& options, const std:
   }
 }
 
-/// The size of every boundary vertex that the grid uses.
-BoundarySizes boundary_sizes(const TetComplex& complex) {
+/// The boundary vertices that the grid uses and that have sizes.
+std::vector<VertexIndex> sized_vertices(const TetComplex& complex) {
+  std::vector<VertexIndex> sized;
+  for (VertexIndex v = 0; v < complex.num_vertices(); ++v)
+    if (complex.on_boundary[v] && complex.vertex_tet[v] != kNoIndex && complex.vertex[v].h > 0) sized.push_back(v);
+  return sized;
+}
+
+BoundarySizes boundary_sizes(const TetComplex& complex, const std::vector<VertexIndex>& vertices) {
   BoundarySizes boundary;
-  for (VertexIndex v = 0; v < complex.num_vertices(); ++v) {
-    if (!complex.on_boundary[v] || complex.vertex_tet[v] == kNoIndex || !(complex.vertex[v].h > 0)) continue;
+  for (const VertexIndex v : vertices) {
     boundary.points.push_back(complex.point(v));
     boundary.size.push_back(complex.vertex[v].h);
   }
   return boundary;
 }
 
-std::shared_ptr<const SizeField> build_size_field(const TetComplex& complex, const SizeOptions& options,
+/// Takes out those whose edges are about as long as the metric asks there, or longer: the short edges of long
+/// triangles must not bound what is wanted along the long ones.
+void drop_those_that_suit(std::vector<VertexIndex>& vertices, const Model& model, const SizeField& asked) {
+  constexpr double kSuits = 0.8;  ///< wanted lengths
+  std::vector<Metric> metric(model.points.size());
+  std::vector<double> sum(model.points.size(), 0), count(model.points.size(), 0);
+  for (const VertexIndex v : vertices)
+    if (v < model.points.size()) asked.metrics({&model.points[VertexId(v)], 1}, {&metric[v], 1});
+  for (const std::array<VertexId, 3>& triangle : model.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+        const std::size_t v = triangle[k].index();
+        sum[v] += length_in(metric[v], model.points[triangle[other]] - model.points[triangle[k]]);
+        ++count[v];
+      }
+  std::erase_if(vertices, [&](VertexIndex v) { return v < sum.size() && count[v] > 0 && sum[v] >= kSuits * count[v]; });
+}
+
+std::shared_ptr<const SizeField> build_size_field(const TetComplex& complex, const Model& model, const Options& options,
                                                   std::shared_ptr<const SizeField> asked, Context& context) {
-  BoundarySizes boundary = boundary_sizes(complex);
-  const double largest = largest_size(boundary);
-  std::shared_ptr<const SizeField> of_boundary = build_asked_size_field(std::move(boundary), options, largest, context);
-  return asked ? combine_with_asked(std::move(of_boundary), std::move(asked), options) : of_boundary;
+  std::vector<VertexIndex> vertices = sized_vertices(complex);
+  const double largest = largest_size(boundary_sizes(complex, vertices));
+  if (makes_stretched_cells(options, asked.get())) drop_those_that_suit(vertices, model, *asked);
+  std::shared_ptr<const SizeField> of_boundary;
+  if (!vertices.empty() || !asked)
+    of_boundary = build_asked_size_field(boundary_sizes(complex, vertices), options.size, largest, context);
+  return asked ? combine_with_asked(std::move(of_boundary), std::move(asked), options.size) : of_boundary;
 }
 
 /// Surfaces are kept as they are given, whatever sizes are asked for: flat cells stand where the two do not fit.
@@ -128,6 +155,10 @@ void set_vertex_sizes(TetComplex& complex, const SizeField& field, const Context
 
 }  // namespace
 
+bool makes_stretched_cells(const Options& options, const SizeField* size) {
+  return options.volume.method == "front" && size != nullptr && !size->is_isotropic();
+}
+
 Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<const SizeField> asked, Report& report,
                         Context& context) {
   report.surface = prepare_surface(model, context);
@@ -135,8 +166,9 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   Prepared prepared;
   prepared.grid = options.surface.method == "keep" ? recover(model, options, report, context)
                                                    : regrid_and_recover(model, options, asked, report, context);
-  if (options.surface.method == "keep") warn_of_coarse_surface(model, options.size, asked.get(), context);
-  prepared.size = build_size_field(prepared.grid.complex, options.size, std::move(asked), context);
+  if (options.surface.method == "keep" && !makes_stretched_cells(options, asked.get()))
+    warn_of_coarse_surface(model, options.size, asked.get(), context);
+  prepared.size = build_size_field(prepared.grid.complex, model, options, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;
 }

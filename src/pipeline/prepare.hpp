@@ -14,6 +14,10 @@ struct Prepared {
   std::shared_ptr<const SizeField> size;
 };
 
+/// @brief Whether sizes have directions and the method follows them: only the front does, the others take the least
+/// size over all directions. @param size  may be null
+bool makes_stretched_cells(const Options& options, const SizeField* size);
+
 /// @brief The first half of generate(): look at the surface, recover it, make the size field.
 /// @param asked  lowers the sizes that come from the boundary; null: nothing else is asked for
 /// @throws as generate()

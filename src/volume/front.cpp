@@ -85,7 +85,7 @@ class CellMarks {
 class Front {
  public:
   Front(TetComplex& complex, const SizeField& size, Context& context)
-      : c_(complex), front_(complex), size_(size), context_(context) {
+      : c_(complex), front_(complex, &size), context_(context) {
     for (std::uint32_t f = 0; f < front_.num_slots(); ++f) waiting_.push_back(f);
     live_ = waiting_;
   }
@@ -101,6 +101,7 @@ class Front {
       left = fill_cavities(front_, waiting_, report_, context_);
     }
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
+    DELFRONT_CHECK(front_.obstacles().num_pending() == 0);
     front_.join();
     fill_report();
     return report_;
@@ -172,7 +173,7 @@ class Front {
     double reach = 0;
     for (const std::uint32_t f : active_) {
       at.push_back(middle(f)[axis]);
-      reach += 2 * settings_->radius * static_cast<double>(front_.face(f).size);
+      reach += 2 * settings_->radius * static_cast<double>(front_.face(f).size) * front_.frame(f).reach()[axis];
     }
     const auto [low, high] = std::minmax_element(at.begin(), at.end());
     const double cuts = kMostDeferred * (*high - *low) * static_cast<double>(at.size()) / (2 * reach);
@@ -206,7 +207,7 @@ class Front {
     share_out_front(slabs);
     std::vector<FrontWorker> workers;
     for (std::size_t i = 0; i < slabs.size(); ++i) {
-      workers.emplace_back(front_, size_, *settings_, slabs[i]);
+      workers.emplace_back(front_, *settings_, slabs[i]);
       workers.back().stock = front_.take(faces[i].size());
     }
     parallel_for(context_.threads, slabs.size(),
@@ -298,7 +299,6 @@ class Front {
 
   TetComplex& c_;
   FrontStore front_;
-  const SizeField& size_;
   Context& context_;
   const FrontSettings* settings_ = nullptr;
   std::vector<std::uint32_t> waiting_, skipped_, active_;        ///< faces
@@ -310,18 +310,6 @@ class Front {
   FrontReport report_;
 };
 
-/// Edges of curves, and points that have to stay, inside of regions.
-bool has_inner_constraints(const TetComplex& c) {
-  if (!c.kept_edges.empty()) return true;
-  std::vector<bool> on_face(c.num_vertices(), false);
-  for (FaceRef ref = 0; ref < 4 * c.num_slots(); ++ref)
-    if (!c.is_dead(ref >> 2) && !c.is_ghost(ref >> 2) && c.is_constrained(ref))
-      for (const VertexIndex v : c.face_nodes(ref)) on_face[v] = true;
-  for (VertexIndex v = 0; v < c.num_vertices(); ++v)
-    if (c.vertex_tet[v] != kNoIndex && c.on_boundary[v] && !on_face[v]) return true;
-  return false;
-}
-
 }  // namespace
 
 FrontReport fill_by_front(BoundaryGrid& grid, const SizeField& size, Context& context) {
@@ -332,10 +320,6 @@ FrontReport fill_by_front(BoundaryGrid& grid, const SizeField& size, Context& co
     report.gave_up = why;
     context.warn(fmt::format("no pure front here: {}; points by the front, connected by Delaunay, instead", why));
   };
-  if (has_inner_constraints(grid.complex)) {
-    give_up("curves or points are embedded in the volume");
-    return report;
-  }
   const TetComplex empty = grid.complex;
   try {
     report = Front(grid.complex, size, context).run();

@@ -15,7 +15,10 @@ namespace delfront {
 /// so is tried again with less strict settings, then emptied a little wider and tried again; what even then remains is
 /// a set of small closed cavities, filled by constrained Delaunay with points inside alone. So a valid boundary ends in
 /// a valid grid. Where it is not, or cannot be (`gave_up` says why), the complex is left as it was.
-/// @pre, @post grid.complex.find_defect() is empty; boundary faces and vertices stay
+/// Edges of embedded curves and embedded points are obstacles until tets have them (FrontObstacles). Where the field
+/// has directions, all that is measured is measured in its metric at the face (FrontFrame); vertices then have the mean
+/// over the directions as size.
+/// @pre, @post grid.complex.find_defect() is empty; boundary faces and vertices and kept edges stay
 /// @par Source  Löhner & Parikh (1988); Löhner (2008), section 3.6
 /// @par Threads the same grid for any number
 FrontReport fill_by_front(BoundaryGrid& grid, const SizeField& size, Context& context);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <unordered_map>
 
@@ -21,6 +22,7 @@ constexpr int kRounds = 20;
 constexpr std::size_t kMostEmptied = 4;  ///< tets a round, so that the point can follow
 constexpr std::size_t kMostFaces = 600;  ///< of a cavity that is filled round one point
 constexpr int kHalvings = 8;
+constexpr double kWidest = 32;  ///< sizes round obstacles that are emptied for constrained Delaunay
 
 void sort_out_repeats(std::vector<std::uint32_t>& numbers) {
   std::sort(numbers.begin(), numbers.end());
@@ -31,7 +33,7 @@ void insert_corners(BoxOctree& tree, const FrontStore& front, std::uint32_t f) {
   for (const VertexIndex v : front.nodes(f)) tree.insert(v, {front.complex().point(v), front.complex().point(v)});
 }
 
-/// By corners, so that what lies in a cavity is found.
+/// By corners, so that what lies in a cavity is found. Obstacles have a tree of their own.
 BoxOctree plant_tree(const FrontStore& front, const std::vector<std::uint32_t>& faces) {
   Box box;
   for (const std::uint32_t f : faces) box.add(front.box(f));
@@ -81,17 +83,62 @@ class CavityFiller {
         add_star(apex);
         return true;
       }
-      const Point p = find_point();
+      end_ = find_obstacle_end();
+      const Point p = end_ == kNoIndex ? find_point() : c_.point(end_);
       if (empty_behind_bad_faces(p, floor) > 0) {
         if (made_.empty()) return false;
         f = made_[0];
         continue;
       }
       if (!sees_all(p) || !is_clear(p)) return false;
-      add_star(add_point(p));
+      add_star(end_ == kNoIndex ? add_point(p) : end_);
       return true;
     }
     return false;
+  }
+
+  /// The end of an obstacle in the cavity that can best be the point: no other can be, but one where the obstacle ends.
+  VertexIndex find_obstacle_end() {
+    VertexIndex best = kNoIndex;
+    double highest = -1;
+    for_each_obstacle([&](const FrontObstacle& o) {
+      if (!winds_round(0.5 * (c_.point(o.a) + c_.point(o.b)))) return;
+      for (const VertexIndex v : {o.a, o.b}) {
+        batch_.measure(in_frame(v), quality_);
+        double worst = front_.first_at(v) == kNoIndex ? 2 : 1;  // one that nothing hangs on yet goes first
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+          if (!has_corner(faces_[i], v)) worst += std::min(quality_[i] - 1, 0.0) / static_cast<double>(faces_.size());
+        if (worst > highest) highest = worst, best = v;
+      }
+    });
+    return best;
+  }
+
+  template <class Visit>
+  void for_each_obstacle(Visit&& visit) const {
+    Box box;
+    for (const std::uint32_t f : faces_) box.add(front_.box(f));
+    const FrontObstacles& all = front_.obstacles();
+    all.for_each_overlap(box, [&](std::uint32_t i) {
+      if (all[i].is_pending() && all[i].region == front_.face(faces_[0]).region) visit(all[i]);
+    });
+  }
+
+  bool has_corner(std::uint32_t f, VertexIndex v) const {
+    const auto n = front_.nodes(f);
+    return n[0] == v || n[1] == v || n[2] == v;
+  }
+
+  /// Whether a place lies in the cavity, about: by the solid angles of its faces.
+  bool winds_round(const Point& p) const {
+    double angle = 0;
+    for (const std::uint32_t f : faces_) {
+      const auto n = front_.nodes(f);
+      const Point a = c_.point(n[0]) - p, b = c_.point(n[1]) - p, c = c_.point(n[2]) - p;
+      const double u = length(a), v = length(b), w = length(c);
+      angle += std::atan2(dot(a, cross(b, c)), u * v * w + dot(a, b) * w + dot(b, c) * u + dot(c, a) * v);
+    }
+    return std::fabs(angle) > std::numbers::pi;
   }
 
   void put_back() {
@@ -130,21 +177,25 @@ class CavityFiller {
         }
       }
     }
+    frame_ = front_.frame(f);
     batch_.clear();
     for (const std::uint32_t g : faces_) {
       const auto n = front_.nodes(g);
-      batch_.add(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]));
+      batch_.add(in_frame(n[0]), in_frame(n[1]), in_frame(n[2]));
     }
   }
+
+  /// Quality is that in the frame of one of the faces.
+  Point in_frame(VertexIndex v) const { return frame_.to_frame(c_.point(v)); }
 
   /// Uphill in the worst quality, from the mean of the corners.
   Point find_point() {
     Point p;
     double extent = 0;
     for (const std::uint32_t f : faces_)
-      for (const VertexIndex v : front_.nodes(f)) p = p + c_.point(v);
+      for (const VertexIndex v : front_.nodes(f)) p = p + in_frame(v);
     p = (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
-    for (const std::uint32_t f : faces_) extent = std::max(extent, distance(c_.point(front_.nodes(f)[0]), p));
+    for (const std::uint32_t f : faces_) extent = std::max(extent, distance(in_frame(front_.nodes(f)[0]), p));
     double best = batch_.worst(p), step = 0.25 * extent;
     for (int k = 0; k < kHalvings; ++k) {
       bool moved = false;
@@ -158,17 +209,17 @@ class CavityFiller {
         }
       if (!moved) step *= 0.5;
     }
-    return p;
+    return frame_.from_frame(p);
   }
 
   /// The tets behind faces that p sees badly go; those of the given boundary stay, however badly.
   std::size_t empty_behind_bad_faces(const Point& p, double floor) {
-    batch_.measure(p, quality_);
+    batch_.measure(frame_.to_frame(p), quality_);
     made_.clear();
     std::size_t emptied = 0;
     order_.clear();
     for (std::uint32_t i = 0; i < faces_.size(); ++i)
-      if (quality_[i] < floor) order_.push_back(i);
+      if (quality_[i] < floor && !has_corner(faces_[i], end_)) order_.push_back(i);
     std::stable_sort(order_.begin(), order_.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return quality_[a] < quality_[b]; });
     for (const std::uint32_t i : order_) {
@@ -190,11 +241,11 @@ class CavityFiller {
   bool sees_all(const Point& p) const {
     return std::all_of(faces_.begin(), faces_.end(), [&](std::uint32_t f) {
       const auto n = front_.nodes(f);
-      return orient3d(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), p) > 0;
+      return has_corner(f, end_) || orient3d(c_.point(n[0]), c_.point(n[1]), c_.point(n[2]), p) > 0;
     });
   }
 
-  /// Whether no other part of the front lies in the cavity.
+  /// Whether no other part of the front, and no obstacle but those that end at p, lies in the cavity.
   bool is_clear(const Point& p) {
     Box box;
     for (const std::uint32_t f : faces_) box.add(front_.box(f));
@@ -202,7 +253,16 @@ class CavityFiller {
     tree_.for_each_overlap(box, [&](VertexIndex v) {
       if (clear && front_.first_at(v) != kNoIndex && is_inside(v, p)) clear = false;
     });
+    for_each_obstacle([&](const FrontObstacle& o) { clear = clear && !meets_star(o, p); });
     return clear;
+  }
+
+  bool meets_star(const FrontObstacle& o, const Point& p) const {
+    return std::any_of(faces_.begin(), faces_.end(), [&](std::uint32_t f) {
+      const auto n = front_.nodes(f);
+      const auto at = [&](VertexIndex v) { return NumberedPoint{v, c_.point(v)}; };
+      return !has_corner(f, end_) && is_met_by_tet({at(o.a), at(o.b)}, {at(n[0]), at(n[1]), at(n[2]), {end_, p}});
+    });
   }
 
   /// Whether v, if it is no corner of the cavity, lies in the star of p.
@@ -212,6 +272,7 @@ class CavityFiller {
     for (const std::uint32_t f : faces_) {
       const auto n = front_.nodes(f);
       if (n[0] == v || n[1] == v || n[2] == v) return false;
+      if (has_corner(f, end_)) continue;
       const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
       inside = inside || (orient3d(a, b, c, at) >= 0 && orient3d(a, p, b, at) >= 0 && orient3d(b, p, c, at) >= 0 &&
                           orient3d(c, p, a, at) >= 0);
@@ -220,13 +281,16 @@ class CavityFiller {
   }
 
   /// The fourth corner of a cavity that is a tet; kNoIndex where that is none, or a bad one.
-  VertexIndex find_apex(double floor) const {
+  VertexIndex find_apex(double floor) {
     if (faces_.size() != 4) return kNoIndex;
     const auto n = front_.nodes(faces_[0]);
     for (const VertexIndex v : front_.nodes(faces_[1])) {
       if (v == n[0] || v == n[1] || v == n[2]) continue;
       const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]), d = c_.point(v);
-      if (measure_quality(a, b, c, d) >= floor && orient3d(a, b, c, d) > 0) return v;
+      const double quality = measure_quality(in_frame(n[0]), in_frame(n[1]), in_frame(n[2]), in_frame(v));
+      if (quality < floor || orient3d(a, b, c, d) <= 0) continue;
+      end_ = v;
+      return is_clear(d) ? v : kNoIndex;
     }
     return kNoIndex;
   }
@@ -235,7 +299,8 @@ class CavityFiller {
     FrontStock stock = front_.take(faces_.size());
     made_.clear();
     for (const std::uint32_t f : faces_)
-      if (front_.face(f).is_alive) ++report_.cells_refilled, front_.add_tet(f, apex, stock, made_);
+      if (front_.face(f).is_alive && !has_corner(f, apex))
+        ++report_.cells_refilled, front_.add_tet(f, apex, stock, made_);
     front_.give(stock);
   }
 
@@ -245,6 +310,7 @@ class CavityFiller {
     const VertexIndex v = c_.take_vertices(1)[0];
     c_.set_vertex(v, p, h / static_cast<double>(faces_.size()));
     front_.add_vertex();
+    if (front_.sizes().are_stretched()) front_.sizes().ask(v);
     ++report_.points;
     return v;
   }
@@ -255,12 +321,14 @@ class CavityFiller {
   FrontReport& report_;
   std::uint64_t stamp_ = std::uint64_t{1} << 63;
   std::vector<std::uint32_t> faces_, made_, order_;
+  VertexIndex end_ = kNoIndex;  ///< a vertex that is there and is to be the point
   struct Emptied {
     std::array<VertexIndex, 4> nodes;
     std::uint32_t region;
   };
   std::set<std::array<VertexIndex, 3>> given_up_;
   std::vector<Emptied> emptied_;  ///< tets, in order
+  FrontFrame frame_;
   FaceBatch batch_;
   std::vector<double> quality_;
 };
@@ -312,37 +380,52 @@ struct CavityModel {
   std::vector<VertexIndex> vertex;  ///< of the complex, by point of the model
 };
 
-CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces) {
+/// With the obstacles of the region, all of which lie in cavities by now.
+CavityModel model_of(FrontStore& front, const std::vector<std::uint32_t>& faces, std::uint32_t region) {
   CavityModel cavity;
   const TetComplex& c = front.complex();
   std::unordered_map<VertexIndex, VertexId> number;
+  const auto number_of = [&](VertexIndex v) {
+    const auto [at, is_new] = number.try_emplace(v, VertexId(cavity.vertex.size()));
+    if (is_new) {
+      cavity.vertex.push_back(v);
+      cavity.model.points.push_back(c.point(v));
+    }
+    return at->second;
+  };
   cavity.model.patches.push_back({"cavities", ""});
   for (const std::uint32_t f : faces) {
     const auto n = front.nodes(f);
     const std::uint32_t twin = front.find({n[0], n[2], n[1]});  // a sheet in the region is one triangle
     if (twin < f && front.face(twin).region == front.face(f).region) continue;
     std::array<VertexId, 3> corner;
-    for (unsigned i = 0; i < 3; ++i) {
-      const VertexIndex v = n[i == 0 ? 0 : 3 - i];
-      const auto [at, is_new] = number.try_emplace(v, VertexId(cavity.vertex.size()));
-      if (is_new) {
-        cavity.vertex.push_back(v);
-        cavity.model.points.push_back(c.point(v));
-      }
-      corner[i] = at->second;
-    }
+    for (unsigned i = 0; i < 3; ++i) corner[i] = number_of(n[i == 0 ? 0 : 3 - i]);
     cavity.model.triangles.push_back(corner);
     cavity.model.patch_of_triangle.push_back(PatchId(0));
     cavity.model.input_face.push_back(f);
   }
+  const FrontObstacles& obstacles = front.obstacles();
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const FrontObstacle& o = obstacles[i];
+    if (!o.is_pending() || o.region != region) continue;
+    if (o.is_point())
+      cavity.model.corners.push_back(number_of(o.a));
+    else
+      cavity.model.curves.push_back({"", {number_of(o.a), number_of(o.b)}});
+  }
   return cavity;
 }
 
-void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report, Context& context) {
-  CavityModel cavity = model_of(front, faces);
+/// @return false where embedded edges would have to be divided: nothing has changed then
+bool close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, std::uint32_t region, FrontReport& report,
+                  Context& context) {
+  CavityModel cavity = model_of(front, faces, region);
   RecoveryReport recovery;
   const BoundaryGrid grid = tetrahedralize_boundary(cavity.model, DomainOptions(), {false}, recovery, context);
   if (!grid.split.empty()) throw MeshingError("faces of cavities would have to be divided", recovery.left);
+  const bool has_all = recovery.curve_edges == cavity.model.curves.size() && recovery.curve_edges_split == 0 &&
+                       recovery.embedded_points == cavity.model.corners.size();
+  if (!has_all) return false;
   const TetComplex& from = grid.complex;
   TetComplex& c = front.complex();
   for (auto v = static_cast<VertexIndex>(cavity.vertex.size()); v < from.num_vertices(); ++v) {
@@ -350,8 +433,41 @@ void close_region(FrontStore& front, const std::vector<std::uint32_t>& faces, Fr
     c.set_vertex(own, from.point(v), from.vertex[v].h);
     cavity.vertex.push_back(own);
     front.add_vertex();
+    if (front.sizes().are_stretched()) front.sizes().ask(own);
   }
   report.closed_by_delaunay += front.add_tets(from, cavity.vertex);
+  return true;
+}
+
+/// Take away what is within some sizes of the obstacles that have no tets: edges are found more easily where there is
+/// room.
+/// @return the faces of the region
+std::vector<std::uint32_t> empty_along_obstacles(FrontStore& front, std::uint32_t region, double sizes,
+                                                 FrontReport& report) {
+  const TetComplex& c = front.complex();
+  std::vector<std::array<VertexIndex, 2>> pending;
+  for (std::size_t i = 0; i < front.obstacles().size(); ++i)
+    if (const FrontObstacle& o = front.obstacles()[i]; o.is_pending() && o.region == region)
+      pending.push_back({o.a, o.b});
+  const auto is_near = [&](VertexIndex v) {
+    return std::any_of(pending.begin(), pending.end(), [&](const auto& ends) {
+      const Point to = c.point(v) - c.point(ends[0]), along = c.point(ends[1]) - c.point(ends[0]);
+      const double l2 = squared_length(along), t = l2 > 0 ? std::clamp(dot(to, along) / l2, 0.0, 1.0) : 0;
+      return length(to - t * along) < sizes * c.vertex[v].h;
+    });
+  };
+  std::vector<std::uint32_t> made;
+  for (TetIndex t = 0; t < c.num_slots(); ++t) {
+    if (c.is_dead(t) || c.is_ghost(t) || c.region[t] != region) continue;
+    const std::uint32_t* n = &c.node[4 * t];
+    if (std::none_of(n, n + 4, is_near)) continue;
+    front.remove_tet(t, made);
+    ++report.cells_emptied;
+  }
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t f = 0; f < front.num_slots(); ++f)
+    if (front.face(f).is_alive && front.face(f).region == region) faces.push_back(f);
+  return faces;
 }
 
 }  // namespace
@@ -360,7 +476,16 @@ void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& face
                        Context& context) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of_region;
   for (const std::uint32_t f : faces) of_region[front.face(f).region].push_back(f);
-  for (const auto& [region, some] : of_region) close_region(front, some, report, context);
+  Context quiet = context;  // it warns of edges that it divides
+  quiet.on_log = nullptr;
+  for (auto& [region, some] : of_region) {
+    double sizes = 1;
+    while (!close_region(front, some, region, report, quiet)) {
+      if (sizes > kWidest) throw MeshingError("embedded edges in cavities would have to be divided");
+      some = empty_along_obstacles(front, region, sizes, report);
+      sizes *= 2;
+    }
+  }
 }
 
 }  // namespace delfront

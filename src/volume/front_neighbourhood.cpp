@@ -13,6 +13,7 @@ namespace {
 /// Of a height times the length of its normal: some 60 roundings of products of three lengths, with room to spare.
 constexpr double kHeightBound = 0x1p-46;
 constexpr std::uint8_t kAllSides = 15;
+constexpr double kSpread = 10;  ///< clearances from a common corner, where an edge must have one from the tet
 
 }  // namespace
 
@@ -26,12 +27,15 @@ void Neighbourhood::start(std::uint32_t f) {
   height_.clear();
   exact_.clear();
   faces_.clear();
+  edges_.clear();
   const auto n = front_.nodes(f);
   const Point a = c_.point(n[0]), b = c_.point(n[1]), c = c_.point(n[2]);
+  if (front_.sizes().are_stretched()) frame_ = front_.frame(f);
+  bound_ = kHeightBound * frame_.condition();
   origin_ = (1.0 / 3) * (a + b + c);
-  normal_ = cross(b - a, c - a);
+  normal_ = cross(frame_.along(b - a), frame_.along(c - a));
   const double l = length(normal_);
-  base_ = {normal_, dot(normal_, a - origin_), 0, l};
+  base_ = {normal_, dot(normal_, frame_.along(a - origin_)), 0, l};
   if (l > 0) normal_ = normal_ / l;
   for (const VertexIndex v : n) local(v);
   for (unsigned i = 0; i < 3; ++i) {
@@ -43,7 +47,7 @@ void Neighbourhood::start(std::uint32_t f) {
   }
   double extent = 0;
   for (std::size_t p = 0; p < 3; ++p) extent = std::max(extent, norm_[p]);
-  base_.bound = kHeightBound * extent * extent;
+  base_.bound = bound_ * extent * extent;
 }
 
 std::uint32_t Neighbourhood::local(VertexIndex v) {
@@ -52,7 +56,7 @@ std::uint32_t Neighbourhood::local(VertexIndex v) {
     if (table_[h].id == v) return table_[h].index;
   const auto index = static_cast<std::uint32_t>(id_.size());
   table_[h] = {v, index, step_};
-  const Point at = c_.point(v), r = at - origin_;
+  const Point at = c_.point(v), r = frame_.along(at - origin_);
   id_.push_back(v);
   x_.push_back(r.x);
   y_.push_back(r.y);
@@ -77,6 +81,15 @@ void Neighbourhood::add_face(std::uint32_t f) {
   const auto n = front_.nodes(f);
   faces_.push_back({{local(n[0]), local(n[1]), local(n[2])}});
   add_wedge(faces_.back());
+}
+
+void Neighbourhood::add_obstacle(const FrontObstacle& obstacle) {
+  edges_.push_back({local(obstacle.a), local(obstacle.b)});
+}
+
+bool Neighbourhood::has_obstacle(const FrontObstacle& obstacle) const {
+  return std::any_of(edges_.begin(), edges_.end(),
+                     [&](const Edge& e) { return id_[e.a] == obstacle.a && id_[e.b] == obstacle.b; });
 }
 
 void Neighbourhood::add_wedge(const Face& face) {
@@ -131,7 +144,7 @@ bool Neighbourhood::leaves_narrow_wedge(const Face& face, std::size_t apex, doub
 }
 
 std::size_t Neighbourhood::add_place(Point absolute) {
-  const Point r = absolute - origin_;
+  const Point r = frame_.along(absolute - origin_);
   id_.push_back(kNoIndex);
   x_.push_back(r.x);
   y_.push_back(r.y);
@@ -159,7 +172,7 @@ Neighbourhood::Plane Neighbourhood::plane_through(std::size_t a, std::size_t b, 
   plane.offset = dot(plane.normal, p);
   plane.length = length(plane.normal);
   const double extent = std::max({norm_[a], norm_[b], norm_[c]});
-  plane.bound = kHeightBound * extent * extent;
+  plane.bound = bound_ * extent * extent;
   return plane;
 }
 
@@ -210,7 +223,39 @@ Neighbourhood::Verdict Neighbourhood::test(std::size_t apex, double clearance, d
     ++counts.plane_tests;
     if (crosses(face, apex)) return Verdict::crosses;
   }
+  return edges_.empty() ? Verdict::free : test_obstacles(apex, planes, clearance);
+}
+
+Neighbourhood::Verdict Neighbourhood::test_obstacles(std::size_t apex, const std::array<Plane, 3>& planes,
+                                                     double clearance) {
+  const auto numbered = [&](std::size_t p) { return NumberedPoint{static_cast<VertexIndex>(p), place(p)}; };
+  const std::array<NumberedPoint, 4> tet = {numbered(0), numbered(1), numbered(2), numbered(apex)};
+  for (const Edge& edge : edges_) {
+    if (outside_[edge.a] & outside_[edge.b]) continue;
+    if (is_met_by_tet({numbered(edge.a), numbered(edge.b)}, tet)) return Verdict::crosses;
+  }
+  if (clearance > 0)
+    for (const Edge& edge : edges_)
+      if (is_too_close(edge, apex, planes, clearance)) return Verdict::too_close;
   return Verdict::free;
+}
+
+/// Clipped by the sides of the tet, moved outwards; from a corner of the tet on, only what lies further off counts.
+bool Neighbourhood::is_too_close(const Edge& edge, std::size_t apex, const std::array<Plane, 3>& planes,
+                                 double clearance) const {
+  const auto is_corner = [&](std::uint32_t p) { return p < 3 || p == apex; };
+  if (edge.a == edge.b || (is_corner(edge.a) && is_corner(edge.b))) return false;  // points have been looked at
+  const Point a = at(edge.a), along = at(edge.b) - a;
+  const double off = std::min(kSpread * clearance / std::max(length(along), 1e-300), 1.0);
+  double from = is_corner(edge.a) ? off : 0, to = is_corner(edge.b) ? 1 - off : 1;
+  for (unsigned i = 0; i < 4 && from <= to; ++i) {
+    const Plane& s = i < 3 ? planes[i] : base_;
+    const double start = dot(s.normal, a) - s.offset + clearance * s.length, slope = dot(s.normal, along);
+    if (slope > 0) from = std::max(from, -start / slope);
+    if (slope < 0) to = std::min(to, -start / slope);
+    if (slope == 0 && start <= 0) return false;
+  }
+  return from <= to;
 }
 
 bool Neighbourhood::crosses(const Face& face, std::size_t apex) {
@@ -272,6 +317,16 @@ bool Neighbourhood::meets_new_faces(const Face& face, const std::array<std::uint
 double Neighbourhood::distance_to_points(std::size_t place) const {
   double nearest = 1e300;
   for (std::size_t p = 0; p < place; ++p) nearest = std::min(nearest, squared_length(at(p) - at(place)));
+  return std::sqrt(nearest);
+}
+
+double Neighbourhood::distance_to_edges(std::size_t place) const {
+  double nearest = 1e300;
+  for (const Edge& edge : edges_) {
+    const Point to = at(place) - at(edge.a), along = at(edge.b) - at(edge.a);
+    const double l2 = squared_length(along), t = l2 > 0 ? std::clamp(dot(to, along) / l2, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, squared_length(to - t * along));
+  }
   return std::sqrt(nearest);
 }
 

@@ -10,8 +10,8 @@
 
 namespace delfront {
 
-/// @brief The faces of the front near one of them, copied into small arrays, and the test whether a tet over that face
-/// crosses any of them (F12).
+/// @brief The faces of the front near one of them, and the edges and points that lie in the way (FrontObstacles),
+/// copied into small arrays, and the test whether a tet over that face crosses any of them (F12).
 ///
 /// Three layers, each about ten times as dear as the one before: faces whose box lies apart are not taken in at all;
 /// faces whose corners all lie outside of one side of the tet (shape functions below 0); what is left is decided by
@@ -33,6 +33,9 @@ class Neighbourhood {
   void start(std::uint32_t f);
   /// @brief Take a face in (once each).
   void add_face(std::uint32_t f);
+  /// @brief Take an embedded edge or point in (once each).
+  void add_obstacle(const FrontObstacle& obstacle);
+  bool has_obstacle(const FrontObstacle& obstacle) const;
 
   std::size_t num_points() const { return id_.size(); }
   std::size_t num_faces() const { return faces_.size(); }
@@ -43,6 +46,8 @@ class Neighbourhood {
   double height(std::size_t p) const { return height_[p]; }
   Point origin() const { return origin_; }
   Point normal() const { return normal_; }
+  /// @brief Coordinates, heights and distances here are those of the face's frame; what is decided is decided in space.
+  const FrontFrame& frame() const { return frame_; }
 
   /// @brief A place where there is no point yet, as the last one; drop_place() takes it away.
   std::size_t add_place(Point absolute);
@@ -63,6 +68,7 @@ class Neighbourhood {
   /// @brief How far a place is from the nearest point and, over faces, from these; both in no way exact.
   double distance_to_points(std::size_t place) const;
   double distance_to_faces(std::size_t place) const;
+  double distance_to_edges(std::size_t place) const;
 
   Counts counts;
 
@@ -80,6 +86,9 @@ class Neighbourhood {
 
   struct Face {
     std::array<std::uint32_t, 3> corner;
+  };
+  struct Edge {
+    std::uint32_t a, b;  ///< the same for a lone point
   };
   /// The wedge at a side of the face: directions across it, inwards and up, and where the neighbour's apex lies.
   struct Wedge {
@@ -99,10 +108,14 @@ class Neighbourhood {
   bool is_apart_by_its_plane(const Face& face, const std::array<std::uint32_t, 4>& node) const;
   bool has_corner_inside(const Face& face, const std::array<std::uint32_t, 4>& node) const;
   bool meets_new_faces(const Face& face, const std::array<std::uint32_t, 4>& node);
+  Verdict test_obstacles(std::size_t apex, const std::array<Plane, 3>& planes, double clearance);
+  bool is_too_close(const Edge& edge, std::size_t apex, const std::array<Plane, 3>& planes, double clearance) const;
   Point place(std::size_t p) const { return exact_[p]; }
 
   FrontStore& front_;
   const TetComplex& c_;
+  FrontFrame frame_;
+  double bound_ = 0;  ///< of roundings of heights
   Point origin_, normal_;
   Plane base_;
   std::uint64_t step_ = 0;
@@ -113,6 +126,7 @@ class Neighbourhood {
   std::vector<std::uint8_t> outside_;  ///< by point: bit i where it is known to lie beyond side i of the tet
   std::vector<std::uint8_t> inside_;   ///< bit i where it is known to lie within side i
   std::vector<Face> faces_;
+  std::vector<Edge> edges_;  ///< obstacles
   std::array<Wedge, 3> wedge_;
 };
 

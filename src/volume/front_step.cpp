@@ -78,7 +78,8 @@ void FrontWorker::measure(std::uint32_t f) {
   near_.start(f);
   const auto n = front_.nodes(f);
   double h = 0, perimeter = 0, spread = 0;
-  for (unsigned i = 0; i < 3; ++i) corner_[i] = c_.point(n[i]), h += c_.vertex[n[i]].h / 3;
+  for (unsigned i = 0; i < 3; ++i) place_[i] = c_.point(n[i]), h += c_.vertex[n[i]].h / 3;
+  for (unsigned i = 0; i < 3; ++i) corner_[i] = near_.frame().to_frame(place_[i]);
   centroid_ = near_.origin();
   normal_ = near_.normal();
   for (unsigned i = 0; i < 3; ++i) {
@@ -94,35 +95,46 @@ void FrontWorker::measure(std::uint32_t f) {
 
 double FrontWorker::reach_of_step(std::uint32_t f) const {
   const auto n = front_.nodes(f);
+  const FrontFrame frame = front_.frame(f);
   double longest = 0;
   for (unsigned i = 0; i < 3; ++i)
-    longest = std::max(longest, distance(c_.point(n[i]), c_.point(n[i == 2 ? 0 : i + 1])));
-  return (set_.radius + 1) * kLongest * longest;
+    longest = std::max(longest, length(frame.along(c_.point(n[i]) - c_.point(n[i == 2 ? 0 : i + 1]))));
+  const Point reach = frame.reach();
+  return (set_.radius + 1) * kLongest * longest * std::max({reach.x, reach.y, reach.z});
 }
 
 Box FrontWorker::box_with(const Point& low, const Point& high) const {
   Box box{low, high};
-  for (const Point& p : corner_) box.add(p);
+  for (const Point& p : place_) box.add(p);
   return box;
 }
 
 /// Faces of the front that may meet a tet over face f. @return false where they reach out of the slab
 bool FrontWorker::gather(std::uint32_t f) {
-  const double radius = set_.radius * wanted_;
-  const Point around{radius, radius, radius};
-  const Box box = box_with(ideal_ - around, ideal_ + around);
+  const Point around = set_.radius * wanted_ * near_.frame().reach(), ideal = near_.frame().from_frame(ideal_);
+  const Box box = box_with(ideal - around, ideal + around);
   if (!slab_.holds(box)) return false;
   tree.for_each_overlap(box, [&](std::uint32_t g) {
     ++counts.visited;
     if (g != f && front_.face(g).is_alive) near_.add_face(g);
   });
+  gather_obstacles(box);
   near_.counts.faces += near_.num_faces();
   near_.counts.points += near_.num_points();
   return true;
 }
 
-/// The faces at the corners of the face. @return false where it reaches out of the slab: others may change the lists of
-/// its corners there
+/// Those that another worker may change are not looked at.
+void FrontWorker::gather_obstacles(const Box& box) {
+  const FrontObstacles& obstacles = front_.obstacles();
+  obstacles.for_each_overlap(box, [&](std::uint32_t i) {
+    if (!slab_.meets(obstacles.box(i)) || !obstacles[i].is_pending()) return;
+    if (!near_.has_obstacle(obstacles[i])) near_.add_obstacle(obstacles[i]);
+  });
+}
+
+/// The faces at the corners of the face, and obstacles within reach. @return false where it reaches out of the slab:
+/// others may change the lists of its corners there
 bool FrontWorker::gather_ring(std::uint32_t f) {
   if (!slab_.holds(front_.box(f))) return false;
   taken_in_.assign(1, f);
@@ -132,6 +144,11 @@ bool FrontWorker::gather_ring(std::uint32_t f) {
         taken_in_.push_back(e >> 2);
         near_.add_face(e >> 2);
       }
+  if (front_.obstacles().empty()) return true;
+  const Point around = set_.radius * wanted_ * near_.frame().reach();
+  const Box box = box_with(centroid_ - around, centroid_ + around);
+  if (!slab_.holds(box)) return false;
+  gather_obstacles(box);
   return true;
 }
 
@@ -145,6 +162,7 @@ bool FrontWorker::gather_round(const Point& apex) {
     taken_in_.push_back(g);
     near_.add_face(g);
   });
+  gather_obstacles(box);
   return true;
 }
 
@@ -160,7 +178,7 @@ void FrontWorker::add_candidates() {
     const Point at = near_.at(p);
     const double d2 = squared_length(at - ideal);
     if (near_.height(p) <= 0 || (!is_local_ && d2 > radius2)) continue;
-    const Point absolute = c_.point(near_.id(p));
+    const Point absolute = near_.frame().to_frame(c_.point(near_.id(p)));
     double score = quality(absolute);
     if (score < set_.quality) continue;
     const double wedge = near_.measure_wedges(p);
@@ -180,9 +198,9 @@ void FrontWorker::add_new_points() {
   const Point up = ideal_ - centroid_;
   double share = kPreferOld;
   for (const double height : kHeights) {
-    const Point place = centroid_ + height * up;
+    const Point in_frame = centroid_ + height * up, place = near_.frame().from_frame(in_frame);
     const std::size_t at = near_.add_place(place);
-    const double q = quality(place), wedge = near_.measure_wedges(at);
+    const double q = quality(in_frame), wedge = near_.measure_wedges(at);
     near_.drop_place();
     if (q >= set_.quality && wedge >= set_.wedge) candidates_.push_back({share * std::min(q, wedge), kNoIndex, place});
     share *= 0.5;
@@ -198,7 +216,7 @@ Neighbourhood::Verdict FrontWorker::test(std::size_t apex) {
 
 FrontWorker::Result FrontWorker::try_point(std::uint32_t f, const Candidate& candidate) {
   const VertexIndex d = near_.id(candidate.point);
-  if (orient3d(corner_[0], corner_[1], corner_[2], c_.point(d)) <= 0) return Result::failed;
+  if (orient3d(place_[0], place_[1], place_[2], c_.point(d)) <= 0) return Result::failed;
   if (is_local_ && !gather_round(c_.point(d))) return Result::deferred;
   if (test(candidate.point) != Neighbourhood::Verdict::free) return Result::failed;
   add_tet(f, d);
@@ -214,11 +232,12 @@ void FrontWorker::add_tet(std::uint32_t f, VertexIndex d) {
 
 bool FrontWorker::is_roomy(std::size_t place, double size) const {
   return near_.distance_to_points(place) >= set_.to_points * size &&
-         near_.distance_to_faces(place) >= set_.to_faces * size;
+         near_.distance_to_faces(place) >= set_.to_faces * size &&
+         near_.distance_to_edges(place) >= set_.to_faces * size;
 }
 
 FrontWorker::Result FrontWorker::try_new_point(std::uint32_t f, const Candidate& candidate) {
-  if (orient3d(corner_[0], corner_[1], corner_[2], candidate.place) <= 0) return Result::failed;
+  if (orient3d(place_[0], place_[1], place_[2], candidate.place) <= 0) return Result::failed;
   if (is_local_ && !gather_round(candidate.place)) return Result::deferred;
   const std::size_t place = near_.add_place(candidate.place);
   const bool fits = is_roomy(place, wanted_) && test(place) == Neighbourhood::Verdict::free;
@@ -226,7 +245,8 @@ FrontWorker::Result FrontWorker::try_new_point(std::uint32_t f, const Candidate&
   if (!fits) return Result::failed;
   const VertexIndex d = stock.vertices.back();
   stock.vertices.pop_back();
-  c_.set_vertex(d, candidate.place, size_.size(candidate.place));
+  c_.set_vertex(d, candidate.place, 0);
+  front_.sizes().ask(d);
   add_tet(f, d);
   ++counts.points;
   return Result::done;

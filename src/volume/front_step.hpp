@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "delfront/size_field.hpp"
 #include "spatial/box_octree.hpp"
 #include "volume/front_neighbourhood.hpp"
 #include "volume/front_store.hpp"
@@ -47,8 +46,8 @@ class FrontWorker {
     failed,    ///< no tet that is good enough fits over it
   };
 
-  FrontWorker(FrontStore& front, const SizeField& size, const FrontSettings& settings, const FrontSlab& slab)
-      : front_(front), c_(front.complex()), size_(size), set_(settings), slab_(slab), near_(front) {}
+  FrontWorker(FrontStore& front, const FrontSettings& settings, const FrontSlab& slab)
+      : front_(front), c_(front.complex()), set_(settings), slab_(slab), near_(front) {}
 
   const FrontSlab& slab() const { return slab_; }
 
@@ -67,7 +66,7 @@ class FrontWorker {
   struct Candidate {
     double score;
     std::uint32_t point;  ///< in the neighbourhood; kNoIndex for a new point
-    Point place;          ///< new point
+    Point place;          ///< new point, in space
   };
 
   void measure(std::uint32_t f);
@@ -76,6 +75,7 @@ class FrontWorker {
   bool gather(std::uint32_t f);
   bool gather_ring(std::uint32_t f);
   bool gather_round(const Point& apex);
+  void gather_obstacles(const Box& box);
   void add_candidates();
   void add_new_points();
   Box box_with(const Point& low, const Point& high) const;
@@ -88,13 +88,13 @@ class FrontWorker {
 
   FrontStore& front_;
   TetComplex& c_;
-  const SizeField& size_;
   const FrontSettings set_;
   const FrontSlab slab_;
   Neighbourhood near_;
   bool is_timed_ = false;
-  Point corner_[3], centroid_, normal_, ideal_;
-  double edge_ = 0, wanted_ = 0;  ///< mean edge, wanted edge
+  Point place_[3];                               ///< corners of the face, in space
+  Point corner_[3], centroid_, normal_, ideal_;  ///< in its frame, as all lengths are
+  double edge_ = 0, wanted_ = 0;                 ///< mean edge, wanted edge
   double area_ = 0;
   std::vector<Candidate> candidates_;
   std::vector<std::uint32_t> taken_in_;  ///< faces, in local steps

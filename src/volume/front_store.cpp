@@ -7,7 +7,8 @@
 
 namespace delfront {
 
-FrontStore::FrontStore(TetComplex& complex) : c_(complex) {
+FrontStore::FrontStore(TetComplex& complex, const SizeField* field)
+    : c_(complex), obstacles_(complex), sizes_(complex, field) {
   first_.assign(c_.num_vertices(), kNoIndex);
   std::vector<TetIndex> emptied;
   std::vector<FaceRef> sides;
@@ -101,7 +102,7 @@ FrontStock FrontStore::take(std::size_t tets) {
   faces_.resize(total);
   for (std::size_t f = first; f < total; ++f) faces_[f].is_alive = false;
   stock.faces = {std::move(used), static_cast<TetIndex>(first), static_cast<TetIndex>(total)};
-  first_.resize(c_.num_vertices(), kNoIndex);
+  add_vertex();
   return stock;
 }
 
@@ -118,6 +119,7 @@ TetIndex FrontStore::add_tet(std::uint32_t f, VertexIndex d, FrontStock& stock, 
   c_.set_nodes(t, base.node[0], base.node[1], base.node[2], d);
   c_.flag[t] = 0;
   c_.region[t] = base.region;
+  obstacles_.count_tet({base.node[0], base.node[1], base.node[2], d}, true);
   const auto close = [&](std::uint32_t g, FaceRef ref) {
     c_.bond(ref, faces_[g].behind);
     c_.set_constrained(ref, faces_[g].is_boundary);
@@ -143,6 +145,7 @@ void FrontStore::add_island(const std::array<VertexIndex, 4>& n, std::uint32_t r
   const TetIndex t = c_.new_tet();
   c_.set_nodes(t, n[0], n[1], n[2], n[3]);
   c_.region[t] = region;
+  obstacles_.count_tet(n, true);
   for (FaceRef ref = 4 * t; ref < 4 * t + 4; ++ref) {
     const auto k = c_.face_nodes(ref);
     c_.neigh[ref] = kNoIndex;
@@ -164,10 +167,15 @@ void FrontStore::remove_tet(TetIndex t, std::vector<std::uint32_t>& made) {
       made.push_back(add_face(n, other, c_.region[t], c_.is_constrained(ref), new_slot()));
     }
   }
+  const std::uint32_t* n = &c_.node[4 * t];
+  obstacles_.count_tet({n[0], n[1], n[2], n[3]}, false);
   c_.kill_tet(t);
 }
 
-void FrontStore::add_vertex() { first_.resize(c_.num_vertices(), kNoIndex); }
+void FrontStore::add_vertex() {
+  first_.resize(c_.num_vertices(), kNoIndex);
+  sizes_.make_room();
+}
 
 std::size_t FrontStore::add_tets(const TetComplex& from, const std::vector<VertexIndex>& number) {
   std::vector<TetIndex> slot(from.num_slots(), kNoIndex);
@@ -178,6 +186,7 @@ std::size_t FrontStore::add_tets(const TetComplex& from, const std::vector<Verte
     const std::uint32_t* n = &from.node[4 * t];
     slot[t] = c_.new_tet();
     c_.set_nodes(slot[t], number[n[0]], number[n[1]], number[n[2]], number[n[3]]);
+    obstacles_.count_tet({number[n[0]], number[n[1]], number[n[2]], number[n[3]]}, true);
     c_.region[slot[t]] = TetComplex::kOutside;
   }
   for (TetIndex t = 0; t < from.num_slots(); ++t) {

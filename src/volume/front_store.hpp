@@ -6,6 +6,8 @@
 
 #include "base/flat_array.hpp"
 #include "tetra/tet_complex.hpp"
+#include "volume/front_obstacles.hpp"
+#include "volume/front_sizes.hpp"
 
 namespace delfront {
 
@@ -39,15 +41,23 @@ class FrontStore {
   ///
   /// Ghosts stay, for the hull; a face with regions on both sides gets a ghost behind each side of it (a wall), which
   /// join() takes away.
-  explicit FrontStore(TetComplex& complex);
+  /// @param field  asked for sizes at embedded points and new vertices, and for directions; may be null in tests of
+  /// other things
+  explicit FrontStore(TetComplex& complex, const SizeField* field = nullptr);
 
   TetComplex& complex() { return c_; }
   const TetComplex& complex() const { return c_; }
+  /// @brief Embedded edges and points, counted as tets come and go.
+  const FrontObstacles& obstacles() const { return obstacles_; }
+  FrontSizes& sizes() { return sizes_; }
+  const FrontSizes& sizes() const { return sizes_; }
+  FrontFrame frame(std::uint32_t f) const { return sizes_.frame(nodes(f)); }
   const FrontFace& face(std::uint32_t f) const { return faces_[f]; }
   FrontFace& face(std::uint32_t f) { return faces_[f]; }
   std::size_t num_slots() const { return faces_.size(); }
 
-  /// @brief First face at a vertex, as 4 * face + corner; kNoIndex: the vertex is not on the front.
+  /// @brief First face at a vertex, as 4 * face + corner; kNoIndex: the vertex is not on the front. It may be at an
+  /// obstacle all the same.
   std::uint32_t first_at(VertexIndex v) const { return first_[v]; }
   std::uint32_t next_at(std::uint32_t entry) const { return faces_[entry >> 2].next[entry & 3]; }
   Box box(std::uint32_t f) const {
@@ -90,6 +100,8 @@ class FrontStore {
   std::uint32_t new_slot();
 
   TetComplex& c_;
+  FrontObstacles obstacles_;
+  FrontSizes sizes_;
   FlatArray<FrontFace> faces_;
   FlatArray<std::uint32_t> first_;  ///< by vertex
   std::vector<std::uint32_t> free_;

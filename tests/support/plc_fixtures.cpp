@@ -62,6 +62,26 @@ Facets box_facets(Point low, Point high) {
   return box;
 }
 
+Facets gridded_cube(int n) {
+  Facets cube;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, n})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          std::vector<std::size_t> face;
+          for (const auto& [a, b] : {std::pair{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
+            Point p;
+            p[axis] = side / double(n);
+            p[(axis + 1) % 3] = a / double(n);
+            p[(axis + 2) % 3] = b / double(n);
+            face.push_back(cube.add_point(p));
+          }
+          if (side == 0) std::reverse(face.begin(), face.end());
+          cube.faces.push_back(face);
+        }
+  return cube;
+}
+
 Facets fan_box(int n) {
   Facets box;
   box.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}};
@@ -292,6 +312,10 @@ FilledByFront expect_filled_by_front(const Model& model, const BoundaryGrid& emp
   const auto field = build_boundary_size_field(sizes, context);
   result.report = fill_by_front(result.grid, *field, context);
   EXPECT_EQ(result.grid.complex.find_defect(), "");
+  std::vector<TetIndex> scratch;
+  for (const auto& pieces : result.grid.curve_pieces)
+    for (const auto& [a, b] : pieces)
+      EXPECT_NE(result.grid.complex.find_edge(a, b, scratch), kNoIndex) << "an edge of a curve is not there";
   expect_same_boundary(model, result.grid, domain.keep.empty() && domain.keep_points.empty());
   for (const Finding& f : check(to_mesh(result.grid, model))) EXPECT_NE(f.severity, Severity::error) << f.message;
   return result;

@@ -31,6 +31,8 @@ struct Facets {
 /// @brief sphere_surface(levels).
 Facets sphere_facets(int levels);
 Facets box_facets(Point low, Point high);
+/// @brief The unit cube, each side as n by n squares.
+Facets gridded_cube(int n);
 /// @brief A box whose top is a fan of n slivers from one corner, the sides meeting them.
 Facets fan_box(int n);
 Facets tetrahedron_facets(Point a, Point b, Point c, Point d);

@@ -90,6 +90,25 @@ TEST(GenerateEmbedded, refinement_and_improvement_keep_curves_and_points) {
   }
 }
 
+TEST(GenerateEmbedded, the_pure_front_has_curves_and_points_too) {
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Model model = fixtures::to_model(ball_with_walks(seed, 3, 20));
+    Options options;
+    options.volume.method = "front";
+    Context context;
+    const Outcome outcome = generate(model, options, context);
+    EXPECT_EQ(outcome.report.front.gave_up, "");
+    for (const Finding& f : check(outcome.mesh)) EXPECT_NE(f.severity, Severity::error) << f.message;
+    const auto edges = edges_of_tets(outcome.mesh);
+    for (const Curve& curve : model.curves)
+      for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i)
+        EXPECT_TRUE(edges.contains(std::minmax(curve.vertices[i].value, curve.vertices[i + 1].value)));
+    EXPECT_EQ(outcome.mesh.num_cells(CellType::vertex), model.corners.size());
+    EXPECT_GT(outcome.report.quality.find("min_dihedral")->min, 3);
+  }
+}
+
 TEST(GenerateEmbedded, any_number_of_threads_gives_the_same_grid) {
   const Model model = fixtures::to_model(ball_with_walks(7, 4, 40));
   Options options;

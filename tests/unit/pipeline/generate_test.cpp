@@ -44,6 +44,21 @@ void expect_valid(const Outcome& outcome) {
   for (const Finding& f : check(outcome.mesh)) EXPECT_NE(f.severity, Severity::error) << f.message;
 }
 
+class StretchedAlongX : public SizeField {
+ public:
+  StretchedAlongX(double h, double s1) : h_(h), metric_(stretched_metric(h, {s1, 1})) {}
+  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
+  void metrics(std::span<const Point>, std::span<Metric> metric) const override {
+    std::fill(metric.begin(), metric.end(), metric_);
+  }
+  bool is_isotropic() const override { return false; }
+  double lower_bound(const Box&) const override { return h_; }
+
+ private:
+  double h_;
+  Metric metric_;
+};
+
 TEST(Generate, the_report_counts_what_the_grid_has) {
   Context context;
   const Model model = sphere_model(2);
@@ -205,6 +220,34 @@ TEST(Generate, a_size_far_too_small_ends_before_memory_does) {
     SCOPED_TRACE(size);
     Context context;
     EXPECT_THROW(generate(sphere_model(3), sized(size), context), LimitError);
+  }
+}
+
+/// Only the front stretches its cells, and improvement would undo that. The others take the least size.
+TEST(Generate, stretched_sizes_give_stretched_cells_by_the_front) {
+  const Model model = fixtures::to_model(fixtures::gridded_cube(12));
+  std::size_t cells = 0;
+  for (const char* method : {"front", "front-delaunay"}) {
+    SCOPED_TRACE(method);
+    Options options;
+    options.volume.method = method;
+    options.size.growth = 1.5;
+    Context context;
+    std::vector<std::string> warnings;
+    context.on_log = [&](LogLevel level, const std::string& message) {
+      if (level == LogLevel::warning) warnings.push_back(message);
+    };
+    const bool is_front = options.volume.method == "front";
+    const Outcome outcome = generate(model, options, context, std::make_shared<StretchedAlongX>(1.0 / 12, 8));
+    for (const Finding& f : check(outcome.mesh)) EXPECT_NE(f.severity, Severity::error) << f.message;
+    EXPECT_EQ(outcome.report.improve.passes == 0, is_front);
+    EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(),
+                            [](const std::string& w) { return w.find("improvement") != std::string::npos; }),
+              is_front ? 1 : 0);
+    if (is_front)
+      cells = outcome.report.quality.num_cells;
+    else
+      EXPECT_LT(1.3 * static_cast<double>(cells), static_cast<double>(outcome.report.quality.num_cells));
   }
 }
 

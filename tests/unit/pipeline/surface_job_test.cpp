@@ -54,7 +54,7 @@ TEST(SurfaceJob, WithoutAnyWishSidesAreAsLongAsGivenOnes) {
   Model model = build_model({{fixtures::sphere_surface(3), "ball"}}, context);
   const std::size_t given = model.triangles.size();
   SurfaceGridReport report;
-  regrid_as_asked(model, options, nullptr, report, context);
+  regrid_as_asked(model, options, *surface_sizes(model, options, nullptr), report, context);
   EXPECT_NEAR(double(model.triangles.size()) / double(given), 1, 0.15);
 }
 

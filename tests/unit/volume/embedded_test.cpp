@@ -16,27 +16,6 @@ namespace {
 
 using namespace fixtures;
 
-/// The unit cube, each side as n by n squares.
-Facets gridded_cube(int n) {
-  Facets cube;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int side : {0, n})
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-          std::vector<std::size_t> face;
-          for (const auto& [a, b] : {std::pair{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}) {
-            Point p;
-            p[axis] = side / double(n);
-            p[(axis + 1) % 3] = a / double(n);
-            p[(axis + 2) % 3] = b / double(n);
-            face.push_back(cube.add_point(p));
-          }
-          if (side == 0) std::reverse(face.begin(), face.end());
-          cube.faces.push_back(face);
-        }
-  return cube;
-}
-
 /// A curve through n points at random in the ball of that radius, and as many points alone.
 void add_random_curve(Facets& body, int n, Point centre, double radius, std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "delfront/size_field.hpp"
+#include "delfront/surface_check.hpp"
 #include "support/plc_fixtures.hpp"
 #include "support/support.hpp"
 #include "support/tet_fixtures.hpp"
@@ -76,6 +77,18 @@ bool crosses(const TestTet& t, const FrontStore& front, std::uint32_t g) {
   return false;
 }
 
+/// The same for what is embedded and has no tet yet.
+bool meets_obstacle(const TestTet& t, const FrontStore& front) {
+  const auto at = [&](VertexIndex v) { return NumberedPoint{v, front.complex().point(v)}; };
+  const FrontObstacles& all = front.obstacles();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].is_pending() &&
+        is_met_by_tet({at(all[i].a), at(all[i].b)},
+                      {NumberedPoint{t.id[0], t.at[0]}, {t.id[1], t.at[1]}, {t.id[2], t.at[2]}, {t.id[3], t.at[3]}}))
+      return true;
+  return false;
+}
+
 struct Verdicts {
   int free = 0, crossing = 0;
 };
@@ -99,6 +112,8 @@ void compare_with_all_pairs(const Model& model, unsigned seed, int steps, Verdic
     near.start(f);
     for (const std::uint32_t g : faces)
       if (g != f) near.add_face(g);
+    for (std::size_t i = 0; i < front.obstacles().size(); ++i)
+      if (front.obstacles()[i].is_pending()) near.add_obstacle(front.obstacles()[i]);
     const auto n = front.nodes(f);
     const bool is_new = random() % 4 == 0;
     const std::size_t old = 3 + random() % std::max<std::size_t>(near.num_points() - 3, 1);
@@ -109,7 +124,8 @@ void compare_with_all_pairs(const Model& model, unsigned seed, int steps, Verdic
     const TestTet t{{n[0], n[1], n[2], is_new ? kNoIndex : near.id(old)},
                     {c.point(n[0]), c.point(n[1]), c.point(n[2]), apex}};
     const bool expected =
-        std::any_of(faces.begin(), faces.end(), [&](std::uint32_t g) { return g != f && crosses(t, front, g); });
+        std::any_of(faces.begin(), faces.end(), [&](std::uint32_t g) { return g != f && crosses(t, front, g); }) ||
+        meets_obstacle(t, front);
     const std::size_t at = is_new ? near.add_place(apex) : old;
     const bool is_free = near.test(at, 0, 1) == Neighbourhood::Verdict::free;
     ASSERT_EQ(is_free, !expected) << "step " << step << ", face " << f << (is_new ? ", a new point" : "");
@@ -147,6 +163,31 @@ TEST(FrontCrossing, agrees_with_all_pairs_where_much_is_flat_or_shared) {
     compare_with_all_pairs(fixtures::to_model(rooms), seed, 200, verdicts);
     compare_with_all_pairs(fixtures::to_model(fixtures::fan_box(12)), seed, 200, verdicts);
     compare_with_all_pairs(fixtures::to_model(fixtures::chazelle(3, 0.1)), seed, 200, verdicts);
+  }
+  EXPECT_GT(verdicts.free, 200);
+  EXPECT_GT(verdicts.crossing, 200);
+}
+
+TEST(FrontCrossing, agrees_with_all_pairs_where_curves_and_points_are_embedded) {
+  Verdicts verdicts;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> place(1, 7);  // a lattice, so that much is flat
+    for (Facets body : {box_facets({0, 0, 0}, {1, 1, 1}), fixtures::sphere_facets(1)}) {
+      const Point middle = body.faces.size() == 6 ? Point{0.5, 0.5, 0.5} : Point{};
+      for (int i = 0; i < 4; ++i) {
+        const auto anywhere = [&] {
+          return body.add_point(
+              middle + Point{place(random) / 16. - 0.25, place(random) / 16. - 0.25, place(random) / 16. - 0.25});
+        };
+        body.curves.push_back({anywhere(), anywhere()});
+        body.corners.push_back(anywhere());
+      }
+      const Model model = fixtures::to_model(body);
+      Context context;
+      if (has_errors(check_surface(model, context).findings)) continue;  // curves that meet
+      compare_with_all_pairs(model, seed, 200, verdicts);
+    }
   }
   EXPECT_GT(verdicts.free, 200);
   EXPECT_GT(verdicts.crossing, 200);
@@ -214,19 +255,6 @@ TEST(Front, scaling_by_powers_of_two_changes_nothing) {
   const auto a = fixtures::expect_filled_by_front(model, recovered(model));
   const auto b = fixtures::expect_filled_by_front(large, recovered(large));
   EXPECT_EQ(a.grid.complex.node, b.grid.complex.node);
-}
-
-TEST(Front, curves_in_the_volume_are_left_to_delaunay_and_said_so) {
-  Facets box = box_facets({0, 0, 0}, {1, 1, 1});
-  Model model = fixtures::to_model(box);
-  model.points.push_back({0.4, 0.5, 0.5});
-  model.points.push_back({0.6, 0.5, 0.5});
-  model.curves.push_back({"wire", {VertexId(model.points.size() - 2), VertexId(model.points.size() - 1)}});
-  BoundaryGrid grid = recovered(model);
-  Context context;
-  const FrontReport report = fill_by_front(grid, Funnel({0, 0, 0}, 0.2, 0, 0.2), context);
-  EXPECT_FALSE(report.gave_up.empty());
-  EXPECT_EQ(grid.complex.find_defect(), "");
 }
 
 /// Thin slots, wedges and coarse walls with sizes that vary by 1e4.
