@@ -57,6 +57,8 @@ std::string with_commas(std::size_t value) {
   return result;
 }
 
+constexpr std::size_t kMostIds = 8;  // of a place
+
 void print_findings(const std::vector<Finding>& findings, std::size_t places_shown) {
   std::vector<const Finding*> sorted;
   for (const Finding& f : findings) sorted.push_back(&f);
@@ -66,8 +68,10 @@ void print_findings(const std::vector<Finding>& findings, std::size_t places_sho
     fmt::print("{:<8} {:<26} {:>9}  {}\n", severity_name(f->severity), f->kind, with_commas(f->count), f->message);
     for (std::size_t i = 0; i < std::min(places_shown, f->places.size()); ++i) {
       const Place& place = f->places[i];
-      fmt::print("{:>45}  at ({:.9g}, {:.9g}, {:.9g}), ids {}\n", "", place.at.x, place.at.y, place.at.z,
-                 fmt::join(place.ids, " "));
+      const std::size_t shown = std::min(place.ids.size(), kMostIds);
+      fmt::print("{:>45}  at ({:.9g}, {:.9g}, {:.9g}), ids {}{}\n", "", place.at.x, place.at.y, place.at.z,
+                 fmt::join(place.ids.begin(), place.ids.begin() + static_cast<std::ptrdiff_t>(shown), " "),
+                 shown < place.ids.size() ? " …" : "");
     }
     if (!f->remedy.empty()) fmt::print("{:>45}  try: {}\n", "", f->remedy);
   }

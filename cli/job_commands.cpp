@@ -87,6 +87,7 @@ class JobCommand : public Command {
   int run(const std::string& command_line) override {
     Options options = effective_options();
     if (kind_ == JobKind::sizes && !is_typed("output.files")) name_size_file(options);
+    if (kind_ != JobKind::grid && !is_typed("output.report")) options.output.report.clear();  // the job's is its grid's
     if (print_config_) {
       fmt::print("{}", print_config(options));
       return 0;
@@ -266,6 +267,9 @@ class JobCommand : public Command {
     if (grid.triangles)
       fmt::print("new surface    {} triangles (given: {}), angles from {:.1f} degrees, at most {:.3g} off\n",
                  grid.triangles, grid.triangles_given, grid.min_angle_deg, grid.largest_distance);
+    if (const FrontReport& front = result.report.front; front.sweeps > 0)
+      fmt::print("front          {} sweeps, {} cavities left by them, {} cells in them made by Delaunay\n",
+                 front.sweeps, front.cavities, with_commas(front.closed_by_delaunay));
     const RecoveryReport& recovery = result.report.recovery;
     if (recovery.steiner_left)
       fmt::print("boundary       {} Steiner points are left on it; the report lists them\n", recovery.steiner_left);

@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr std::size_t kColumns = 100;
+constexpr std::size_t kMostIds = 8;  ///< of a place; the defects file has all
 
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
@@ -203,7 +204,9 @@ void Terminal::error(ExitCode code, const std::string& message, const std::vecto
   for (std::size_t i = 0; i < std::min(places.size(), kShown); ++i) {
     const Place& place = places[i];
     fmt::print(stderr, "  at ({:g}, {:g}, {:g})", place.at.x, place.at.y, place.at.z);
-    for (std::size_t k = 0; k < place.ids.size(); ++k) fmt::print(stderr, "{} {}", k ? "," : " ids", place.ids[k]);
+    const std::size_t shown = std::min(place.ids.size(), kMostIds);
+    for (std::size_t k = 0; k < shown; ++k) fmt::print(stderr, "{} {}", k ? "," : " ids", place.ids[k]);
+    if (shown < place.ids.size()) fmt::print(stderr, " and {} more", place.ids.size() - shown);
     fmt::print(stderr, "\n");
   }
   if (places.size() > kShown) fmt::print(stderr, "  and {} more places\n", places.size() - kShown);

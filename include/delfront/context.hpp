@@ -42,6 +42,7 @@ class Context {
   /// What messages about limits advise, where sizes are not what decides (refinement of a grid).
   std::string limit_advice = "ask for larger sizes (--hmax, --growth)";
   std::vector<StageTime> stage_times;  ///< in the order the stages ended
+  bool is_timed = false;               ///< a stage is under way
 
   void log(LogLevel level, const std::string& message) const {
     if (on_log) on_log(level, message);
@@ -65,7 +66,7 @@ class Context {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// @brief Adds the time of a scope to `context.stage_times`.
+/// @brief Adds the time of a scope to `context.stage_times`; within the scope of another it counts as part of that.
 class StageTimer {
  public:
   StageTimer(Context& context, std::string stage);
@@ -77,6 +78,7 @@ class StageTimer {
   Context& context_;
   std::string stage_;
   std::chrono::steady_clock::time_point start_;
+  bool is_part_;
 };
 
 /// @brief Round to nearest and no flush to zero, as the predicates need; call once at entry.

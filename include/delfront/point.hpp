@@ -52,6 +52,7 @@ struct Box {
   }
   Point centre() const { return 0.5 * (low + high); }
   /// @return 0 for an empty box
+  double volume() const { return is_empty() ? 0 : (high.x - low.x) * (high.y - low.y) * (high.z - low.z); }
   double diagonal() const { return is_empty() ? 0 : length(high - low); }
   double longest_side() const { return is_empty() ? 0 : std::max({high.x - low.x, high.y - low.y, high.z - low.z}); }
 };

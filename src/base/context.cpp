@@ -53,9 +53,14 @@ double Context::seconds_since_start() const {
 }
 
 StageTimer::StageTimer(Context& context, std::string stage)
-    : context_(context), stage_(std::move(stage)), start_(std::chrono::steady_clock::now()) {}
+    : context_(context),
+      stage_(std::move(stage)),
+      start_(std::chrono::steady_clock::now()),
+      is_part_(std::exchange(context.is_timed, true)) {}
 
 StageTimer::~StageTimer() {
+  if (is_part_) return;
+  context_.is_timed = false;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   context_.stage_times.push_back({stage_, seconds});
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 
 #include "geometry/patches.hpp"
 
@@ -214,6 +215,12 @@ double default_far_field_side(const EncloseOptions& options) {
   if (options.shape == "sphere" || !options.corners) return kDefaultFraction * options.size.value;
   const auto& c = *options.corners;
   return kDefaultFraction * 0.5 * std::min({c[3] - c[0], c[4] - c[1], c[5] - c[2]});
+}
+
+double far_field_volume(const EncloseOptions& options) {
+  const double size = options.size.value;
+  if (options.shape == "sphere") return 4.0 / 3 * std::numbers::pi * size * size * size;
+  return options.corners ? box_from(options, {}, 0).volume() : 8 * size * size * size;
 }
 
 PatchId add_far_field(Model& model, const EncloseOptions& options, const LengthScale& scale, Context& context) {

@@ -27,6 +27,9 @@ double to_model_units(const Length& length, const LengthScale& scale);
 /// @return the side of its triangles where options.h is absent, for a size in model units
 double default_far_field_side(const EncloseOptions& options);
 
+/// @return what it encloses, with the model itself, for a size in model units
+double far_field_volume(const EncloseOptions& options);
+
 /// @brief Append a box whose sides are grids of about h, with common vertices along its edges; outward.
 void append_box(Model& model, const Box& box, double h, PatchId patch);
 

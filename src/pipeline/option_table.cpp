@@ -174,8 +174,8 @@ std::vector<OptionRow> build_table() {
                "grids in the plane: keep the given boundary points and no others, or split segments by size",
                [](auto& o) -> auto& { return o.planar.boundary; }, {"keep", "split"}));
   add(text_row(
-      "planar.method", "", "",
-      "how the plane is gridded: by an advancing front; by the points of a front, connected by Delaunay; or by "
+      "planar.method", "--planar-method", "front-delaunay|front|delaunay",
+      "how the plane is gridded: by the points of a front, connected by Delaunay; by an advancing front; or by "
       "Delaunay with points at the centres of circles",
       [](auto& o) -> auto& { return o.planar.method; }, {"front-delaunay", "front", "delaunay"}));
   add(number_row(
@@ -186,7 +186,9 @@ std::vector<OptionRow> build_table() {
       "the surface's triangles: keep the given ones, or make new ones of the sizes asked for, by a front or by a "
       "front and Delaunay flips; smooth geometry: mapped (also keep), through its parameters, or front, in space",
       [](auto& o) -> auto& { return o.surface.method; }, {"keep", "front", "delaunay", "mapped"}));
-  add(text_row("volume.method", "", "", "how the volume is gridded; none: the surface only",
+  add(text_row("volume.method", "--volume-method", "front-delaunay|front|delaunay|none",
+               "how the volume is gridded: by the points of a front, connected by Delaunay; by an advancing front; by "
+               "Delaunay with points at the centres of spheres; none: the surface only",
                [](auto& o) -> auto& { return o.volume.method; }, {"front-delaunay", "front", "delaunay", "none"}));
   add(boolean_row(
       "volume.core", "a regular lattice in the middle, where sizes are largest and the boundary is far",
@@ -198,8 +200,9 @@ std::vector<OptionRow> build_table() {
       "improve.max_passes", "", "passes at most", "a whole number",
       [](auto& o) -> auto& { return o.improve.max_passes; }));
   add(number_row(
-      "improve.goals.min_dihedral", "", "", "worst dihedral angle to work towards", "degrees from 0 to 70", 0, 70,
-      [](auto& o) -> auto& { return o.improve.min_dihedral; }));
+      "improve.goals.min_dihedral", "", "",
+      "worst dihedral angle to work towards; cells a good deal above it are bettered too, where that costs little",
+      "degrees from 0 to 70", 0, 70, [](auto& o) -> auto& { return o.improve.min_dihedral; }));
   add(number_row(
       "improve.goals.max_nonortho", "", "", "worst non-orthogonality to work towards", "degrees from 0 to 90", 0, 90,
       [](auto& o) -> auto& { return o.improve.max_nonortho; }));

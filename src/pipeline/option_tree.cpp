@@ -316,8 +316,10 @@ std::string print_config(const Options& options) {
     }
     const std::string name = dot == std::string::npos ? row.key : row.key.substr(dot + 1);
     const JobValue value = row.get(options);
-    result += value.is(JobValue::Kind::none) ? fmt::format("# {} =  # {}\n", name, row.help)
-                                             : fmt::format("{} = {}  # {}\n", name, to_toml(value), row.help);
+    const std::string choices = row.allowed.starts_with("one of ") ? fmt::format(" ({})", row.allowed) : "";
+    result += value.is(JobValue::Kind::none)
+                  ? fmt::format("# {} =  # {}{}\n", name, row.help, choices)
+                  : fmt::format("{} = {}  # {}{}\n", name, to_toml(value), row.help, choices);
   }
   for (const EntryTable& of_entries : entry_tables()) {
     if (of_entries.count(options) == 0) {  // what may be

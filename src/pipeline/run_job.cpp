@@ -114,7 +114,10 @@ void set_scale(Run& run, const Box& box) {
   run.result.scale = {box.diagonal(), box.longest_side(), metres_per_unit(options.input.units)};
   resolve_lengths(options, run.result.scale);
   EncloseOptions& enclose = options.domain.enclose;
-  if (has_far_field(options) && !enclose.h && options.size.hmax)  // no side above hmax, on the far field neither
+  if (!has_far_field(options) || !options.size.hmax) return;
+  if (!is_planar_job(run.inputs) && options.domain.keep.empty() && options.domain.keep_points.empty())
+    refuse_tiny_hmax(far_field_volume(enclose) - box.volume(), options, run.context);
+  if (!enclose.h)  // no side above hmax, on the far field neither
     enclose.h = Length{std::min(default_far_field_side(enclose), options.size.hmax->value), ""};
 }
 
@@ -280,7 +283,7 @@ void finish(Run& run, Outcome outcome) {
 /// Goes as far as a grid would, and writes sizes or nothing.
 void prepare_survey(Run& run) {
   run.options.stop_after = run.kind == JobKind::estimate ? "improve" : "";
-  run.options.volume.method = VolumeOptions().method;
+  if (run.options.volume.method == "none") run.options.volume.method = VolumeOptions().method;
 }
 
 void check_size_outputs(const Options& options) {
@@ -295,6 +298,8 @@ void check_size_outputs(const Options& options) {
 void survey(Run& run, const KeptDomain& domain, const std::shared_ptr<const SizeField>& size) {
   if (run.kind == JobKind::estimate) {
     run.result.estimate = estimate_grid(domain, *size, growth_of(coarse_options(run.options).size), run.context);
+    if (!domain.is_planar() && run.options.volume.method == "front")
+      slow_down_to_front(*run.result.estimate, run.context.threads);
     refine_estimate(*run.result.estimate, domain.is_planar(), run.options.refine.levels);
   } else {
     const std::shared_ptr<const SizeField> fine = scale_sizes(size, 1 / coarsening(run.options));
@@ -445,8 +450,10 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
   leave_defects(run);
   leave_partial_grid(run);
   for (const std::string& warning : result.report.warnings)
-    if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end())
+    if (std::find(result.warnings.begin(), result.warnings.end(), warning) == result.warnings.end()) {
       result.warnings.push_back(warning);
+      context.warn(warning);
+    }
   result.stage_times = context.stage_times;
   result.seconds = context.seconds_since_start();
   result.peak_memory = peak_resident_memory();

@@ -31,6 +31,7 @@ constexpr double kFinestBorder = 1.0 / 128;  ///< of the longest side: no box on
 
 // Of this program on one core of about 2.5 GHz; bench/compare_peers.py measures them (docs/performance.md).
 constexpr double kSecondsPerTet = 0.5e-6, kSecondsPerTetAndThread = 0.8e-6, kSecondsPerTriangle = 0.5e-6;
+constexpr double kSecondsPerFrontTet = 6.5e-6;  ///< of one thread; docs/front-volume.md
 constexpr double kSecondsPerRefined = 0.15e-6;  ///< a cell that comes of halved edges (docs/refine.md)
 constexpr double kBytesAtStart = 40e6, kBytesPerTet = 66, kBytesPerTriangle = 90;
 
@@ -155,6 +156,10 @@ double growth_of(const SizeOptions& options) {
                         options.steeper);
 }
 
+void slow_down_to_front(Estimate& estimate, int threads) {
+  estimate.seconds += estimate.cells * kSecondsPerFrontTet / std::pow(std::max(1, threads), 0.8);
+}
+
 void refine_estimate(Estimate& estimate, bool is_planar, int levels) {
   if (levels == 0) return;
   const double finer = std::ldexp(1, levels), times = std::pow(finer, is_planar ? 2 : 3);
@@ -164,6 +169,18 @@ void refine_estimate(Estimate& estimate, bool is_planar, int levels) {
   estimate.greatest_size /= finer;
   estimate.memory = kBytesAtStart + estimate.cells * (is_planar ? kBytesPerTriangle : kBytesPerTet);
   estimate.seconds += estimate.cells * kSecondsPerRefined;
+}
+
+void refuse_tiny_hmax(double volume, const Options& options, const Context& context) {
+  const double limit =
+      context.max_cells > 0 ? static_cast<double>(context.max_cells) : static_cast<double>(TetComplex::kMaxSlots);
+  const double cells = kCellsPerVolume * volume / std::pow(options.size.hmax->value, 3);
+  if (cells < kSurelyOver * limit) return;
+  throw LimitError(fmt::format(
+      "stopped before gridding: cells no larger than hmax, {:.4g}, are at least {:.1e} up to the far field, over the "
+      "limit of {}{}; ask for a larger hmax: it holds everywhere, sizes near the body have keys of their own",
+      options.size.hmax->value, cells, limit,
+      context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
 
 void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, int levels, Context& context) {

@@ -17,6 +17,14 @@ namespace delfront {
 Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double growth, Context& context,
                        std::size_t max_leaves = 500'000);
 
+/// @brief What the pure front takes longer, a tet at a time.
+void slow_down_to_front(Estimate& estimate, int threads);
+
+/// @brief Before there is anything: cells up to hmax in so much space that are many times those that may be or can be
+/// held.
+/// @throws LimitError
+void refuse_tiny_hmax(double volume, const Options& options, const Context& context);
+
 /// @brief What an estimate becomes where every edge of the grid is then halved so many times.
 void refine_estimate(Estimate& estimate, bool is_planar, int levels);
 
