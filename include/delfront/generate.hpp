@@ -52,6 +52,7 @@ struct FrontReport {
   std::size_t cavities = 0;            ///< closed ones that they made
   std::size_t cells_emptied = 0;       ///< round these and embedded edges in them, to be filled anew ...
   std::size_t cells_refilled = 0;      ///< ... by cells to one point in each
+  std::size_t cavities_by_stars = 0;   ///< others of them, by cells to several points
   std::size_t cavities_left = 0;       ///< even then, closed by constrained Delaunay ...
   std::size_t closed_by_delaunay = 0;  ///< ... with so many cells
   double crossing_share = 0;           ///< of the time of steps, in crossing tests (F12)

@@ -128,6 +128,7 @@ Json to_json(const FrontReport& r) {
           {"cavities", r.cavities},
           {"cells_emptied", r.cells_emptied},
           {"cells_refilled", r.cells_refilled},
+          {"cavities_by_stars", r.cavities_by_stars},
           {"cavities_left", r.cavities_left},
           {"closed_by_delaunay", r.closed_by_delaunay},
           {"crossing_share", number(r.crossing_share)},

@@ -332,6 +332,11 @@ void work_in_the_plane(Run& run) {
   Box box;
   for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
   set_scale(run, box);
+  const bool is_section = std::all_of(run.options.input.files.begin(), run.options.input.files.end(),
+                                      [](const std::string& file) { return file.ends_with(".dat"); });
+  if (is_section && !has_far_field(run.options))
+    run.context.warn(
+        "the inside of the section is gridded; for the flow around it give a far field: --farfield circle:50c");
   const CurveId far_field = set_curves(domain, run.options, run.result.scale, run.context);
   if (run.options.stop_after == "geometry" || run.options.stop_after == "surface" ||
       run.options.volume.method == "none") {

@@ -157,10 +157,10 @@ void insert_segments(const PlanarDomain& domain, const std::vector<VertexIndex>&
   if (inserter.crossings.empty()) return;
   const Place& first = inserter.crossings.front();
   throw InputError(
-      fmt::format("{} segments cross others; the first near ({:.9g}, {:.9g}), between points {} and {}, and {} and {}; "
-                  "give the point where they cross to both of them",
-                  inserter.crossings.size(), first.at.x, first.at.y, first.ids[0], first.ids[1], first.ids[2],
-                  first.ids[3]),
+      fmt::format(
+          "segments cross, in {} places; the first near ({:.9g}, {:.9g}), between points {} and {}, and {} and {}; "
+          "give the point where they cross to both of them",
+          inserter.crossings.size(), first.at.x, first.at.y, first.ids[0], first.ids[1], first.ids[2], first.ids[3]),
       inserter.crossings);
 }
 

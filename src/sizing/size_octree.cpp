@@ -24,7 +24,7 @@ SizeOctree::SizeOctree(const SizeField& size, const Box& domain, const SizeOctre
   dimension_ = domain.high.z - domain.low.z > kFlat * side_ ? 3 : 2;
   std::vector<OctreeLeaf> cells(1);
   for (int level = 0; !cells.empty(); ++level) {
-    context.progress("sizes", leaves_.size() + cells.size(), 0, "boxes");
+    context.progress("sizes", leaves_.size() + cells.size(), 0, "octants");
     set_bounds(cells, size, context);
     add_corners(cells, size, context);
     raise_bounds(cells);

@@ -12,7 +12,7 @@
 namespace delfront {
 
 /// @brief Boxes, found by box: an octree that grows by insertion (F13). Each box stands once, in the leaf of its
-/// centre; a node knows how far the boxes below it reach, so that none is missed, however large.
+/// centre; a node knows how far the boxes below it reach along each axis, so that none is missed, however long.
 ///
 /// Coordinates are held in single precision relative to the root's centre; a slack pays for the rounding, so a query
 /// may give boxes that lie a little beyond, but misses none. Boxes are not taken out: what is gone is passed over by
@@ -38,11 +38,9 @@ class BoxOctree {
     const Point middle = box.centre(), half = 0.5 * (box.high - box.low);
     Entry entry;
     entry.id = id;
-    entry.largest = 0;
     for (int i = 0; i < 3; ++i) {
       entry.at[i] = static_cast<float>(middle[i] - centre_[i]);
       entry.reach[i] = static_cast<float>(half[i]) * kRoundUp;
-      entry.largest = std::max(entry.largest, entry.reach[i]);
     }
     insert(entry);
   }
@@ -69,8 +67,7 @@ class BoxOctree {
       if (node.first_child != 0) {
         for (std::uint32_t c = node.first_child; c < node.first_child + kChildren; ++c) {
           const Node& child = nodes_[c];
-          const float reach = child.half + child.reach;
-          if (child.reach >= 0 && !is_apart(child.centre, {reach, reach, reach})) stack[top++] = c;
+          if (child.reach[0] >= 0 && !is_apart(child.centre, child.reach)) stack[top++] = c;
         }
         continue;
       }
@@ -93,7 +90,6 @@ class BoxOctree {
 
   struct Entry {
     Triple at, reach;
-    float largest;  ///< of the reaches
     std::uint32_t id;
   };
   struct Bucket {
@@ -103,7 +99,7 @@ class BoxOctree {
   struct Node {
     Triple centre{};
     float half = 0;
-    float reach = -1;               ///< the largest of the boxes below; negative: none
+    Triple reach{-1, -1, -1};       ///< of the boxes below, from the centre, axis by axis; negative: none
     std::uint32_t first_child = 0;  ///< 0: a leaf
     std::uint32_t bucket = kNone;
   };
@@ -126,11 +122,9 @@ class BoxOctree {
     return o;
   }
 
-  /// Centres outside of the root's box count as if their boxes reached in, so that the leaf they end in is looked at.
   static void reach_to(Node& node, const Entry& entry) {
-    float out = 0;
-    for (int i = 0; i < 3; ++i) out = std::max(out, std::fabs(entry.at[i] - node.centre[i]) - node.half);
-    node.reach = std::max(node.reach, entry.largest + out);
+    for (int i = 0; i < 3; ++i)
+      node.reach[i] = std::max(node.reach[i], std::fabs(entry.at[i] - node.centre[i]) + entry.reach[i]);
   }
 
   void insert(const Entry& entry) {

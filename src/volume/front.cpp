@@ -16,6 +16,7 @@
 #include "base/parallel.hpp"
 #include "delfront/errors.hpp"
 #include "volume/front_closing.hpp"
+#include "volume/front_stars.hpp"
 #include "volume/front_step.hpp"
 
 namespace delfront {
@@ -35,9 +36,9 @@ constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may l
 constexpr double kWorthSlabs = 0.02;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
 constexpr std::size_t kFacesPerShare = 8192;  ///< of the front, that one thread shares out among the slabs
-constexpr int kSweepsAgain = 12;  ///< times that a ring round what is left is emptied and all sweeps are made
-constexpr std::size_t kFew = 3;   ///< times so many faces in the front as there are to do: only those near are searched
-constexpr int kPhases = 4;        ///< three axes, then one piece
+constexpr int kSweepsAgain = 4;  ///< times that a ring round what is left is emptied and all sweeps are made
+constexpr std::size_t kFew = 3;  ///< times so many faces in the front as there are to do: only those near are searched
+constexpr int kPhases = 4;       ///< three axes, then one piece
 
 /// Cells of a lattice round some boxes, told by hashes: a box that is near one of them is always found, others at
 /// times.
@@ -94,11 +95,12 @@ class Front {
     for (const FrontSettings& settings : kSweeps) sweep(settings);
     report_.sides_left = waiting_.size();
     std::vector<std::uint32_t> left = fill_cavities(front_, waiting_, report_, context_);
+    left = fill_by_stars(front_, left, report_, context_);
     for (int again = 0; again < kSweepsAgain && !left.empty(); ++again) {
-      report_.cavities_left = 0;
       live_ = waiting_ = empty_around(front_, left, report_);
       for (const FrontSettings& settings : kSweeps) sweep(settings);
       left = fill_cavities(front_, waiting_, report_, context_);
+      left = fill_by_stars(front_, left, report_, context_);
     }
     if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
     DELFRONT_CHECK(front_.obstacles().num_pending() == 0);

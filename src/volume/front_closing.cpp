@@ -11,6 +11,7 @@
 #include "delfront/errors.hpp"
 #include "spatial/box_octree.hpp"
 #include "tetra/quality.hpp"
+#include "volume/deepest_point.hpp"
 #include "volume/recover.hpp"
 
 namespace delfront {
@@ -43,6 +44,13 @@ BoxOctree plant_tree(const FrontStore& front, const std::vector<std::uint32_t>& 
   return tree;
 }
 
+HalfSpace half_space(const FrontStore& front, std::uint32_t f) {
+  const auto n = front.nodes(f);
+  const TetComplex& c = front.complex();
+  const Point a = c.point(n[0]);
+  return {a, cross(c.point(n[1]) - a, c.point(n[2]) - a)};
+}
+
 class CavityFiller {
  public:
   CavityFiller(FrontStore& front, BoxOctree& tree, FrontReport& report)
@@ -57,11 +65,13 @@ class CavityFiller {
   /// @return whether the cavity that has face f is filled
   bool fill(std::uint32_t f) {
     const auto first = front_.nodes(f);
-    for (const double floor : kFloors) {
-      emptied_.clear();
-      if (try_fill(front_.find(first), floor)) return true;
-      put_back();
-    }
+    for (const bool from_kernel : {false, true})
+      for (const double floor : kFloors) {
+        from_kernel_ = from_kernel;
+        emptied_.clear();
+        if (try_fill(front_.find(first), floor)) return true;
+        put_back();
+      }
     collect(front_.find(first));
     for (const std::uint32_t g : faces_) given_up_.insert(key(g));
     return false;
@@ -188,15 +198,30 @@ class CavityFiller {
   /// Quality is that in the frame of one of the faces.
   Point in_frame(VertexIndex v) const { return frame_.to_frame(c_.point(v)); }
 
-  /// Uphill in the worst quality, from the mean of the corners.
+  /// Uphill in the worst quality: from the mean of the corners, or from within the kernel if that does not find it.
   Point find_point() {
+    double q = 0;
+    const Point p = climb_from(mean_of_corners(), q);
+    if (q > 0 || !from_kernel_) return frame_.from_frame(p);
+    planes_.clear();
+    for (const std::uint32_t f : faces_) planes_.push_back(half_space(front_, f));
+    const DeepestPoint deepest = find_deepest_point(planes_);
+    return frame_.from_frame(deepest.depth > 0 ? climb_from(frame_.to_frame(deepest.at), q) : p);
+  }
+
+  Point mean_of_corners() const {
     Point p;
-    double extent = 0;
     for (const std::uint32_t f : faces_)
       for (const VertexIndex v : front_.nodes(f)) p = p + in_frame(v);
-    p = (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
+    return (1.0 / (3 * static_cast<double>(faces_.size()))) * p;
+  }
+
+  /// In the frame.
+  Point climb_from(Point p, double& best) const {
+    double extent = 0;
     for (const std::uint32_t f : faces_) extent = std::max(extent, distance(in_frame(front_.nodes(f)[0]), p));
-    double best = batch_.worst(p), step = 0.25 * extent;
+    double step = 0.25 * extent;
+    best = batch_.worst(p);
     for (int k = 0; k < kHalvings; ++k) {
       bool moved = false;
       for (int axis = 0; axis < 3; ++axis)
@@ -209,7 +234,7 @@ class CavityFiller {
         }
       if (!moved) step *= 0.5;
     }
-    return frame_.from_frame(p);
+    return p;
   }
 
   /// The tets behind faces that p sees badly go; those of the given boundary stay, however badly.
@@ -331,6 +356,8 @@ class CavityFiller {
   FrontFrame frame_;
   FaceBatch batch_;
   std::vector<double> quality_;
+  bool from_kernel_ = false;
+  std::vector<HalfSpace> planes_;
 };
 
 }  // namespace
@@ -340,6 +367,7 @@ std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<st
   BoxOctree tree = plant_tree(front, faces);
   CavityFiller filler(front, tree, report);
   filler.faces_to_see = faces;
+  for (const std::uint32_t f : faces) front.face(f).stamp = 0;    // of an earlier time
   for (std::size_t i = 0; i < filler.faces_to_see.size(); ++i) {  // it grows
     const std::uint32_t f = filler.faces_to_see[i];
     if (!front.face(f).is_alive || filler.is_given_up(f)) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -74,6 +75,54 @@ TEST(ReportJson, says_why_points_were_left_on_the_surface) {
   EXPECT_EQ(left[0]["why"], "a sheet ends here");
   EXPECT_EQ(left[1]["why"], "too thin");
   EXPECT_EQ(left[1]["at"], (nlohmann::json{4.0, 5.0, 6.0}));
+}
+
+TEST_F(RunJob, an_hmax_that_no_far_field_can_hold_is_refused_before_there_is_one) {
+  options_.domain.enclose.shape = "sphere";
+  options_.domain.enclose.size = Length{1000, ""};
+  options_.size.hmax = Length{0.5, ""};  // some 29 million triangles on the far field alone
+  const JobResult result = run();
+  EXPECT_EQ(result.exit_code, ExitCode::limit_reached);
+  EXPECT_NE(result.error.find("hmax"), std::string::npos) << result.error;
+  EXPECT_LT(result.peak_memory, std::uint64_t{1} << 30);
+}
+
+TEST_F(RunJob, a_max_of_cells_counts_for_an_hmax_too) {
+  options_.domain.enclose.shape = "box";
+  options_.domain.enclose.size = Length{10, ""};
+  options_.size.hmax = Length{2, ""};  // 8 500 cells
+  context_.max_cells = 2'000;
+  EXPECT_EQ(run().exit_code, ExitCode::limit_reached);
+  context_.max_cells = 200'000;
+  EXPECT_EQ(run().exit_code, ExitCode::done);
+}
+
+TEST_F(RunJob, warnings_of_the_plane_are_told_as_they_come_and_once) {
+  std::ofstream(path("square.poly")) << "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
+  options_.input.files = {path("square.poly")};
+  options_.size.hmax = Length{0.1, ""};
+  std::vector<std::string> told;
+  context_.on_log = [&](LogLevel level, const std::string& message) {
+    if (level == LogLevel::warning) told.push_back(message);
+  };
+  const JobResult result = run();
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.error;
+  EXPECT_EQ(told, result.warnings);
+  EXPECT_EQ(std::count_if(told.begin(), told.end(),
+                          [](const std::string& w) { return w.find("--boundary split") != std::string::npos; }),
+            1);
+}
+
+TEST(StageTimer, a_stage_within_another_counts_as_part_of_that) {
+  Context context;
+  {
+    const StageTimer outer(context, "outer");
+    const StageTimer inner(context, "inner");
+  }
+  { const StageTimer next(context, "next"); }
+  ASSERT_EQ(context.stage_times.size(), 2u);
+  EXPECT_EQ(context.stage_times[0].stage, "outer");
+  EXPECT_EQ(context.stage_times[1].stage, "next");
 }
 
 TEST_F(RunJob, an_open_surface_is_refused_with_its_places) {

@@ -257,10 +257,25 @@ TEST(Front, scaling_by_powers_of_two_changes_nothing) {
   EXPECT_EQ(a.grid.complex.node, b.grid.complex.node);
 }
 
-/// Thin slots, wedges and coarse walls with sizes that vary by 1e4.
+/// Its notches leave narrow places that no point sees whole: quadratically many convex parts (Chazelle 1984).
+TEST(Front, F17_fills_what_no_point_sees_without_delaunay) {
+  for (const auto& [notches, gap] : {std::pair{2, 0.1}, {3, 0.1}, {3, 0.01}, {4, 0.05}}) {
+    SCOPED_TRACE(std::to_string(notches) + " notches, gap " + std::to_string(gap));
+    const Facets facets = fixtures::chazelle(notches, gap);
+    const Model model = fixtures::to_model(facets);
+    const auto r = fixtures::expect_filled_by_front(model, recovered(model));
+    EXPECT_EQ(r.report.gave_up, "");
+    EXPECT_GT(r.report.cavities_by_stars, 0u);
+    EXPECT_EQ(r.report.closed_by_delaunay, 0u);
+    EXPECT_NEAR(fixtures::total_volume(r.grid.complex), facets.volume(), 1e-9 * facets.volume());
+  }
+}
+
+/// Thin slots, wedges and coarse walls with sizes that vary by 1e4. Next to nothing is left to Delaunay.
 TEST(Front, random_rooms_with_any_sizes) {
   const unsigned first = fixtures::setting("DELFRONT_RANDOM_SEED", 1),
                  cases = fixtures::setting("DELFRONT_RANDOM_CASES", 300);
+  std::size_t cells = 0, by_delaunay = 0;
   for (unsigned seed = first; seed < first + cases; ++seed) {
     SCOPED_TRACE("DELFRONT_RANDOM_SEED=" + std::to_string(seed) + " DELFRONT_RANDOM_CASES=1");
     std::mt19937 random(seed);
@@ -279,10 +294,15 @@ TEST(Front, random_rooms_with_any_sizes) {
     const double least = std::pow(10.0, -4 * unit(random));
     const Funnel field({unit(random), unit(random), unit(random)}, std::max(least, 2e-4), 0.2 + 0.3 * unit(random), 1);
     Context context;
-    fill_by_front(grid, field, context);
+    const FrontReport report = fill_by_front(grid, field, context);
     ASSERT_EQ(grid.complex.find_defect(), "");
     ASSERT_NEAR(fixtures::total_volume(grid.complex), volume, 1e-11);
+    EXPECT_EQ(report.gave_up, "");
+    cells += report.cells + report.cells_refilled;
+    by_delaunay += report.closed_by_delaunay;
   }
+  RecordProperty("by_delaunay", static_cast<int>(by_delaunay));
+  EXPECT_LE(static_cast<double>(by_delaunay), 1e-3 * static_cast<double>(cells));
 }
 
 }  // namespace
