@@ -54,6 +54,7 @@ class Splitting {
     sum[0] = 0;
     for (std::size_t k = 1; k < kSamples; ++k) sum[k] = sum[k - 1] + 0.5 * step * (1 / sizes[k - 1] + 1 / sizes[k]);
     const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(sum.back())));
+    context_.check_cells(parts);  // each has a triangle of its own
     std::vector<double> result;
     for (std::size_t part = 1, k = 1; part < parts; ++part) {
       const double wanted = sum.back() * static_cast<double>(part) / static_cast<double>(parts);
@@ -108,6 +109,10 @@ class Splitting {
       ref = c_.turn_left(ref);
     } while (ref != first);
     make_delaunay(c_, edges_);
+    if (count_ % kPiecesPerCancelCheck == 0) {
+      context_.check_limits();
+      context_.check_cells(grid_.pieces.size());
+    }
     return grid_.pieces.size() - 1;
   }
 

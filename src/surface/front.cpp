@@ -194,7 +194,10 @@ void SurfaceFront::run(const Context& context) {
       }
       continue;
     }
-    if (++result_.steps % kCheckEvery == 0) context.check_limits();
+    if (++result_.steps % kCheckEvery == 0) {
+      context.check_limits();
+      context.check_cells(result_.triangles.size() / 4);  // no tetrahedron has more
+    }
     if (num_in_tree_ > 3 * num_alive_ + 1000) rebuild_tree();
     if (area_ > kMostArea * support_.area()) return;  // it runs over what it has gridded
     if (result_.steps > kMostSteps * (result_.triangles.size() + num_begun)) return;  // it goes round in circles

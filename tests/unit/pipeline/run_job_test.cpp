@@ -97,6 +97,18 @@ TEST_F(RunJob, a_max_of_cells_counts_for_an_hmax_too) {
   EXPECT_EQ(run().exit_code, ExitCode::done);
 }
 
+TEST_F(RunJob, limits_hold_while_lines_and_surfaces_are_divided) {
+  options_.surface.method = "front";
+  options_.size.hmax = Length{1e-3, ""};  // 14 million triangles
+  context_.max_cells = 5000;
+  EXPECT_EQ(run().exit_code, ExitCode::limit_reached);
+  std::ofstream(path("square.poly")) << "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
+  options_.input.files = {path("square.poly")};
+  options_.planar.boundary = "split";
+  options_.size.hmax = Length{1e-8, ""};  // 100 million pieces a side
+  EXPECT_EQ(run().exit_code, ExitCode::limit_reached);
+}
+
 TEST_F(RunJob, warnings_of_the_plane_are_told_as_they_come_and_once) {
   std::ofstream(path("square.poly")) << "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
   options_.input.files = {path("square.poly")};
