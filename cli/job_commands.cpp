@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "delfront/errors.hpp"
+#include "delfront/geometry_text.hpp"
 #include "delfront/job.hpp"
 #include "pipeline/option_table.hpp"
 
@@ -32,6 +33,7 @@ const char* const kExamples =
 
 bool is_job_file(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
+  if (is_geometry_file(path)) return false;
   return extension == ".toml" || extension == ".json";
 }
 
@@ -66,7 +68,8 @@ class JobCommand : public Command {
     app = parent.add_subcommand(words.name, words.help);
     app->allow_extras();
     app->footer(words.footer);
-    app->add_option("FILE", files_, "surface files, gridded together; or a job file (.toml, .json)");
+    app->add_option("FILE", files_,
+                    "surface files or smooth geometry (.geom.toml), gridded together; or a job file (.toml, .json)");
     for (const OptionRow& row : option_table())
       if (!row.flags.empty()) add_row_flag(row);
     for (const Shorthand& shorthand : shorthand_table()) add_shorthand(shorthand);

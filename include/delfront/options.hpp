@@ -187,7 +187,9 @@ struct PlanarOptions {
 
 /// @brief How the surface that is given becomes the boundary of the grid.
 struct SurfaceOptions {
-  std::string method = "keep";  ///< keep: triangle for triangle; front, delaunay: gridded anew to the sizes asked for
+  /// keep: triangle for triangle; front, delaunay: gridded anew to the sizes asked for. Of smooth geometry keep and
+  /// mapped: through its parameters; front: in space
+  std::string method = "keep";
   std::vector<PatchId> kept = {};  ///< patches that keep their triangles all the same; set by the run
 };
 

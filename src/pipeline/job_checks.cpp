@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "delfront/errors.hpp"
+#include "delfront/geometry_text.hpp"
 #include "delfront/grid_check.hpp"
 #include "delfront/io.hpp"
 #include "pipeline/option_table.hpp"
@@ -100,8 +101,20 @@ void check_domain(const Options& options) {
 }
 
 void check_files(const Options& options) {
-  for (std::size_t i = 0; i < options.input.files.size(); ++i)
-    with_place(options, fmt::format("input.files[{}]", i), [&] { format_of(options.input.files[i]); });
+  std::size_t smooth = 0;
+  for (std::size_t i = 0; i < options.input.files.size(); ++i) {
+    const std::string& path = options.input.files[i];
+    if (is_geometry_file(path))
+      ++smooth;
+    else
+      with_place(options, fmt::format("input.files[{}]", i), [&] { format_of(path); });
+  }
+  if (options.surface.method == "delaunay" && smooth > 0 && smooth == options.input.files.size())
+    throw usage_error(options, "surface.method", "delaunay is for facets; smooth geometry takes mapped or front");
+  if (options.surface.method == "mapped" && smooth == 0)
+    throw usage_error(
+        options, "surface.method",
+        fmt::format("mapped is for smooth geometry ({}); facets take keep, front or delaunay", kGeometrySuffix));
   if (writes_grid(options) && !options.output.format.empty())
     with_place(options, "output.format", [&] { format_of("", options.output.format, true); });
   for (std::size_t i = 0; writes_grid(options) && i < options.output.files.size(); ++i)

@@ -14,6 +14,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/toml_letters.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/job.hpp"
 #include "pipeline/option_table.hpp"
@@ -173,6 +174,8 @@ void resolve_paths(JobValue& value, const std::string& key, const fs::path& fold
 }  // namespace
 
 JobValue parse_toml(const std::string& text, const std::string& name) {
+  if (const int line = find_stray_letter(text); line > 0)
+    throw UsageError(fmt::format("{}:{}: not valid TOML: a letter outside of ASCII; put quotes round it", name, line));
   try {
     const toml::table table = toml::parse(text);
     return from_toml(table);

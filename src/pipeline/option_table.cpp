@@ -150,7 +150,8 @@ std::vector<OptionRow> build_table() {
       [](auto& o) -> auto& { return o.stop_after; }, kStages));
   add(texts_row(
       "input.files", "", "",
-      "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …; or lines in the plane: DAT, POLY, …",
+      "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …, smooth geometry (.geom.toml); or lines in the plane: "
+      "DAT, POLY, …",
       [](auto& o) -> auto& { return o.input.files; }));
   add(text_row(
       "input.units", "--units", "UNIT", "unit of the coordinates, where lengths in m, mm, in, ft are used",
@@ -182,10 +183,10 @@ std::vector<OptionRow> build_table() {
       "planar.min_angle", "", "", "grids in the plane: smallest angle to work towards", "degrees from 0 to 40", 0, 40,
       [](auto& o) -> auto& { return o.planar.min_angle; }));
   add(text_row(
-      "surface.method", "--surface-method", "keep|front|delaunay",
+      "surface.method", "--surface-method", "keep|front|delaunay|mapped",
       "the surface's triangles: keep the given ones, or make new ones of the sizes asked for, by a front or by a "
-      "front and Delaunay flips",
-      [](auto& o) -> auto& { return o.surface.method; }, {"keep", "front", "delaunay"}));
+      "front and Delaunay flips; smooth geometry: mapped (also keep), through its parameters, or front, in space",
+      [](auto& o) -> auto& { return o.surface.method; }, {"keep", "front", "delaunay", "mapped"}));
   add(text_row("volume.method", "--volume-method", "front-delaunay|front|delaunay|none",
                "how the volume is gridded: by the points of a front, connected by Delaunay; by an advancing front; by "
                "Delaunay with points at the centres of spheres; none: the surface only",

@@ -2,12 +2,19 @@
 #pragma once
 #include <vector>
 
+#include "delfront/brep.hpp"
 #include "delfront/context.hpp"
 #include "delfront/findings.hpp"
 #include "delfront/job.hpp"
 #include "delfront/model.hpp"
 
 namespace delfront {
+
+/// @brief An input of smooth geometry: which, and what it holds.
+struct GeometryInput {
+  std::size_t input = 0;
+  Brep brep;
+};
 
 /// @brief A job under way: what goes in, and what its steps have made so far.
 struct Run {
@@ -20,6 +27,7 @@ struct Run {
   Mesh partial;                        ///< what there is of the grid where gridding failed
   JobKind kind = JobKind::grid;
   Model geometry;  ///< where new boundary points of refine.levels belong; empty: in the middle of their edges
+  std::vector<GeometryInput> smooth;  ///< inputs whose mesh is made from them
 };
 
 inline bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }

@@ -9,11 +9,14 @@
 #include <fstream>
 #include <new>
 
+#include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
+#include "delfront/geometry_text.hpp"
 #include "delfront/io.hpp"
 #include "delfront/job.hpp"
 #include "geometry/enclose.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/geometry_job.hpp"
 #include "pipeline/job_checks.hpp"
 #include "pipeline/job_leavings.hpp"
 #include "pipeline/job_sizes.hpp"
@@ -49,6 +52,7 @@ void hash_file(InputFile& file) {
 }
 
 std::string stem_of(const std::string& path) {
+  if (is_geometry_file(path)) return geometry_stem(path);
   fs::path p(path);
   if (!p.has_filename()) p = p.parent_path();  // a folder's name that ends in '/'
   return p.stem().string();
@@ -64,12 +68,22 @@ void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& cont
                            is_planar_grid ? "boundary lines" : "faces"));
 }
 
+/// Smooth geometry has a grid to look at until sizes are known.
+void read_smooth(Run& run, const std::string& path) {
+  run.smooth.push_back({run.inputs.size(), read_brep(path)});
+  BrepGridReport report;
+  run.inputs.push_back({grid_to_look_at(run.smooth.back().brep, run.context, report), stem_of(path)});
+}
+
 void read_inputs(Run& run) {
   const StageTimer timer(run.context, "read");
   const std::vector<std::string>& files = run.options.input.files;
   for (std::size_t i = 0; i < files.size(); ++i) {
     run.context.progress("read", i, files.size(), "files");
-    run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
+    if (is_geometry_file(files[i]))
+      read_smooth(run, files[i]);
+    else
+      run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
     InputFile file{files[i], 0, "", run.inputs.back().mesh.points.size(), 0};
     for (const CellBlock& block : run.inputs.back().mesh.blocks) file.num_cells += block.size();
     hash_file(file);
@@ -137,10 +151,52 @@ void set_boundaries(Run& run, Model& model) {
   }
 }
 
+/// What can be asked of triangles to look at: not their curvature, the surfaces' own counts; nothing on what has no
+/// name yet, such as the far field.
+Options options_for_looks(const Options& options, const Model& model) {
+  Options result = options;
+  result.size.curvature = result.size.angle = 0;
+  result.size.deviation.reset();
+  std::vector<std::string> names = model.corner_names;
+  for (const Patch& patch : model.patches) names.push_back(patch.name);
+  for (const Curve& curve : model.curves) names.push_back(curve.name);
+  std::erase_if(result.size.on, [&](const SizeOnOptions& on) {
+    return std::none_of(names.begin(), names.end(),
+                        [&](const std::string& name) { return matches_pattern(name, on.name); });
+  });
+  return result;
+}
+
+/// Smooth geometry gridded to the sizes asked for; with levels the final sizes are those of the true geometry.
+void grid_smooth(Run& run, Model& model) {
+  const Options& options = run.options;
+  apply_boundaries(boundaries_of_input(options), model);  // sizes are asked for on their names
+  const std::shared_ptr<const SizeField> asked =
+      build_job_size_field(options_for_looks(options, model), model, model.bounding_box(), run.context);
+  std::vector<NamedMesh> fine = run.inputs;
+  for (const GeometryInput& smooth : run.smooth) {
+    std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, options, asked, run.context);
+    BrepGridReport report;
+    if (options.refine.levels > 0 && run.geometry.points.empty())
+      fine[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, report);
+    if (options.refine.levels > 0) size = coarse_sizes(std::move(size), options, model.bounding_box(), run.context);
+    run.inputs[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, report);
+    run.context.log(LogLevel::info, fmt::format("{}: {} faces, {} triangles, angles from {:.1f} degrees",
+                                                options.input.files[smooth.input], smooth.brep.faces.size(),
+                                                report.triangles, report.min_angle_deg));
+  }
+  if (options.refine.levels > 0 && run.geometry.points.empty()) run.geometry = build_model(fine, run.context);
+  model = build_model(run.inputs, run.context);
+  model.feature_angle = options.input.feature_angle;
+  if (options.surface.method == "mapped" || run.smooth.size() == options.input.files.size())
+    run.options.surface.method = "keep";
+}
+
 Model make_model(Run& run) {
   Model model = build_model(run.inputs, run.context);
   model.feature_angle = run.options.input.feature_angle;
   set_scale(run, model.surface_box());
+  if (!run.smooth.empty()) grid_smooth(run, model);
   set_boundaries(run, model);
   return model;
 }
@@ -391,7 +447,7 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
     result.stage = progress.stage;
     if (outer_progress) outer_progress(progress);
   };
-  Run run{options, context, result, {}, {}, {}, {}, kind, {}};
+  Run run{options, context, result, {}, {}, {}, {}, kind, {}, {}};
   if (kind != JobKind::grid) prepare_survey(run);
   work_and_catch(run);
   context.on_log = outer_log;

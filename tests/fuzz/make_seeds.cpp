@@ -145,6 +145,16 @@ int main(int argc, char** argv) {
              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n$Elements\n1\n"
              "7 2 2 0 1 1 2 3\n$EndElements\n$NodeData\n1\n\"h\"\n1\n0\n3\n0\n1\n3\n1 .1\n2 .2\n3 .3\n$EndNodeData\n"
              "$ElementNodeData\n1\n\"g\"\n1\n0\n3\n0\n1\n1\n7 3 .1 .2 .3\n$EndElementNodeData\n");
+  write_text(
+      root, "geometry_text",
+      "tolerance = 1e-9\n[[surface]]\nname = \"s\"\ntype = \"nurbs\"\ndegree = [2, 1]\nknots_u = [0, 0, 0, 1, 1, 1]\n"
+      "knots_v = [0, 0, 1, 1]\npoints = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 1], [1, 1, 0]], [[2, 0, 1], [2, 1, 1]]]\n"
+      "weights = [[1, 1], [1, 2], [1, 1]]\n[[surface]]\nname = \"c\"\ntype = \"cone\"\nhalf_angle = 30\norigin = "
+      "[0, 0, 1]\naxis = [1, 1, 0]\n[[corner]]\nname = \"a\"\nat = [0, 0, 0]\n[[edge]]\nname = \"e\"\ntype = "
+      "\"circle\"\nradius = 1\nrange = [0, 90]\n[[edge]]\nname = \"o\"\ntype = \"on\"\nsurface = \"s\"\nuv = "
+      "[[0, 0], [1, 0]]\n[[face]]\nsurface = \"s\"\n[[face]]\nname = \"f\"\nkind = \"wall\"\nsurface = \"s\"\n"
+      "reversed = true\nloops = [[\"o\", {edge = \"-e\", uv = [[0, 0], [1, 1]]}]]\n[[shape]]\ntype = \"torus\"\n"
+      "radius = 1\ntube = 0.5\n");
   write_text(root, "off", "COFF # c\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2 9\n");
   write_text(root, "stl",
              "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");

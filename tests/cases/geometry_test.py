@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Smooth geometry as text: looked at, gridded, with sizes, names and a far field; bad files are refused with a line."""
+import json
+import math
+import sys
+import unittest
+
+import case
+
+BALL = '[[shape]]\ntype = "sphere"\nradius = 1\n'
+SHELL = """[[shape]]
+type = "box"
+name = "room"
+min = [-3, -3, -3]
+max = [3, 3, 3]
+
+[[shape]]
+type = "torus"
+name = "ring"
+kind = "wall"
+radius = 1.5
+tube = 0.5
+reversed = true
+"""
+
+
+class SmoothGeometry(case.Case):
+    def grid(self, *arguments, code=0):
+        self.expect(code, "mesh", *arguments, "-o", "out.vtu", "--report", "out.json")
+        return self.report("out.json")
+
+    def test_three_lines_make_a_grid(self):
+        self.write("ball.geom.toml", BALL)
+        self.expect(0, "mesh", "ball.geom.toml", "-o", "ball.su2", "-o", "ball.vtu", "--report", "ball.json")
+        report = self.report("ball.json")
+        self.assertTrue(report["surface"]["is_closed"])
+        self.assertEqual([group["name"] for group in report["boundaries"]], ["sphere"])
+        self.assertAlmostEqual(report["quality"]["volume"] / (4 * math.pi / 3), 1, delta=0.02)
+        self.expect(0, "check", "ball.vtu")
+        # 18 cells a turn: sides of about 2 pi / 18
+        self.assertAlmostEqual(report["surface"]["mean_edge"], 2 * 1.732 / 20, delta=0.03)
+
+    def test_info_lists_what_there_is(self):
+        self.write("room.geom.toml", SHELL)
+        result = self.expect(0, "info", "room.geom.toml", "--json", "room.json",
+                             says=["room_x_low", "ring", "9 corners", "7 faces"])
+        geometry = json.loads((self.folder / "room.json").read_text())["geometry"]
+        self.assertEqual(len(geometry["faces"]), 7)
+        self.assertEqual(len(geometry["edges"]), 14)
+        self.assertEqual(geometry["faces"][6]["kind"], "wall")
+        self.assertIn("closed", result.stdout)
+
+    def test_surface_alone(self):
+        self.write("ball.geom.toml", BALL)
+        self.expect(0, "mesh", "ball.geom.toml", "-o", "ball.stl", "--stop-after", "surface", "--hmax", "0.1")
+        self.expect(0, "info", "ball.stl", says="can bound a volume yes")
+
+    def test_sizes_and_boundaries_of_a_job(self):
+        self.write("room.geom.toml", SHELL)
+        self.write("case.toml", """
+[input]
+files = ["room.geom.toml"]
+[boundaries.outer]
+select = "room_*"
+kind = "farfield"
+[size]
+hmax = 0.8
+[size.on.ring]
+h = 0.12
+[output]
+files = ["out.vtu"]
+report = "out.json"
+""")
+        self.expect(0, "mesh", "case.toml")
+        report = self.report("out.json")
+        kinds = {group["name"]: (group["kind"], group["num_cells"]) for group in report["boundaries"]}
+        self.assertEqual(set(kinds), {"outer", "ring"})
+        self.assertEqual(kinds["ring"][0], "wall")
+        area = 4 * math.pi ** 2 * 1.5 * 0.5
+        self.assertAlmostEqual(kinds["ring"][1] / (area / (0.433 * 0.12 ** 2)), 1, delta=0.25)
+        self.assertAlmostEqual(report["quality"]["volume"], 216 - 2 * math.pi ** 2 * 1.5 * 0.25, delta=0.2)
+
+    def test_far_field_and_facets_beside_it(self):
+        self.write("ball.geom.toml", BALL)
+        self.write("cube.stl", case.stl_binary(case.box_triangles((3, 0, 0), (4, 1, 1))))
+        report = self.grid("ball.geom.toml", "cube.stl", "--farfield", "sphere:10")
+        self.assertEqual({group["name"] for group in report["boundaries"]}, {"sphere", "cube", "farfield"})
+
+    def test_the_same_bytes_for_any_number_of_threads(self):
+        self.write("room.geom.toml", SHELL)
+        grids = []
+        for threads in (1, 2, 8):
+            self.grid("room.geom.toml", "-j", threads)
+            grids.append((self.folder / "out.vtu").read_bytes())
+        self.assertEqual(grids[0], grids[1])
+        self.assertEqual(grids[0], grids[2])
+
+    def test_in_space_instead_of_through_parameters(self):
+        self.write("ball.geom.toml", BALL)
+        report = self.grid("ball.geom.toml", "--surface-method", "front")
+        self.assertAlmostEqual(report["quality"]["volume"] / (4 * math.pi / 3), 1, delta=0.03)
+
+    def test_levels_put_new_points_near_the_true_surface(self):
+        self.write("ball.geom.toml", BALL)
+        report = self.grid("ball.geom.toml", "--levels", "1", "--hmax", "0.1")
+        plain = self.grid("ball.geom.toml", "--hmax", "0.1")
+        self.assertAlmostEqual(report["quality"]["volume"] / plain["quality"]["volume"], 1, delta=0.01)
+
+    def test_curvature_alone_changes_round_things_alone(self):
+        self.write("ball.geom.toml", BALL)
+        coarse = self.grid("ball.geom.toml", "--hmax", "1", "--curvature", "12")["surface"]["mean_edge"]
+        fine = self.grid("ball.geom.toml", "--hmax", "1", "--curvature", "36")["surface"]["mean_edge"]
+        self.assertAlmostEqual(coarse / fine, 3, delta=0.3)
+
+    def test_bad_files_are_refused_with_their_line(self):
+        for text, says in ((BALL.replace("radius", "raduis"), "bad.geom.toml:3"), ("[[shape]\n", "not valid TOML"),
+                           ("", "empty"), (BALL.replace("1", "-1"), "above 0"), ("tolerance = 1\n", "no faces")):
+            with self.subTest(text):
+                self.write("bad.geom.toml", text)
+                for command in (["mesh", "bad.geom.toml", "-o", "out.vtu"], ["info", "bad.geom.toml"],
+                                ["check", "bad.geom.toml"]):
+                    self.expect(3, *command, says=says)
+                self.assertFalse((self.folder / "out.vtu").exists())
+
+    def test_methods_that_do_not_fit(self):
+        self.write("ball.geom.toml", BALL)
+        self.write("cube.stl", case.stl_binary(case.box_triangles()))
+        self.expect(2, "mesh", "cube.stl", "-o", "a.vtu", "--surface-method", "mapped", says="smooth geometry")
+        self.expect(2, "mesh", "ball.geom.toml", "-o", "a.vtu", "--surface-method", "delaunay", says="mapped or front")
+
+    def test_example_wing(self):
+        sys.path.insert(0, str(case.ROOT / "examples" / "swept_wing"))
+        import make_wing
+        self.write("wing.geom.toml", "\n".join(make_wing.wing(41, 0.1)))
+        self.expect(0, "info", "wing.geom.toml", says=["trailing_edge", "can bound a volume yes"])
+        report = self.grid("wing.geom.toml", "--stop-after", "surface")
+        self.assertTrue(report["surface"]["is_closed"])
+        root, tip = make_wing.ROOT_CHORD, make_wing.TIP_CHORD
+        section = 2 * 5 * 0.1 * sum(a / p for a, p in zip(make_wing.COEFFICIENTS, (1.5, 2, 3, 4, 5)))
+        volume = section * make_wing.SEMISPAN * (root * root + root * tip + tip * tip) / 3
+        self.assertAlmostEqual(report["surface"]["volume"] / volume, 1, delta=0.01)
+
+
+if __name__ == "__main__":
+    unittest.main()
