@@ -71,7 +71,8 @@ void refine_levels(Outcome& outcome, const Options& options, const Model* geomet
     const double factor = field.name == "h" ? 1 / coarsening(options) : std::pow(coarsening(options), 2);
     for (double& value : field.values) value *= factor;
   }
-  for (std::string& warning : warnings_of(report.refined, options.refine.geometry.empty() ? "the geometry" : options.refine.geometry))
+  for (std::string& warning :
+       warnings_of(report.refined, options.refine.geometry.empty() ? "the geometry" : options.refine.geometry))
     outcome.report.warnings.push_back(std::move(warning));
   context.log(
       LogLevel::info,

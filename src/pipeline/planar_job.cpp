@@ -113,8 +113,7 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
   return far_field;
 }
 
-std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs,
-                                     const Context& all) {
+std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs, const Context& all) {
   Box box;
   for (const NamedMesh& input : inputs)
     for (const Point& p : input.mesh.points) box.add(p);
@@ -127,7 +126,8 @@ std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<N
     Context context = all;
     context.limit_advice = fmt::format("give planar.curve[{}] a larger h", i);
     try {
-      result.push_back({mesh_of_curve(curve, scale, context), curve.name.empty() ? fmt::format("curve_{}", i + 1) : curve.name});
+      result.push_back(
+          {mesh_of_curve(curve, scale, context), curve.name.empty() ? fmt::format("curve_{}", i + 1) : curve.name});
     } catch (const UsageError& e) {
       throw usage_error(options, fmt::format("planar.curve[{}]", i), e.what());
     } catch (const InputError& e) {

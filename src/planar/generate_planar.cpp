@@ -140,7 +140,8 @@ bool is_stretched(const Options& options, const SizeField& size) {
   return options.planar.method == "front" && !size.is_isotropic();
 }
 
-/// Points that circles ask for make short pieces, which lower the sizes beside them: then their neighbours are too long.
+/// Points that circles ask for make short pieces, which lower the sizes beside them: then their neighbours are too
+/// long.
 void split_boundary(PlanarPrepared& prepared, const Options& options, double largest,
                     const std::shared_ptr<const SizeField>& asked, Context& context) {
   constexpr int kMostRounds = 6;

@@ -107,8 +107,9 @@ class Spline {
 
 std::size_t number_of_pieces(double wanted, const Context& context) {
   if (!(wanted < static_cast<double>(kMostTriangles)))
-    throw LimitError(fmt::format("stopped: a line would be divided into {:.1e} pieces, more than the {:.1e} that fit; {}",
-                                 wanted, static_cast<double>(kMostTriangles), context.limit_advice));
+    throw LimitError(
+        fmt::format("stopped: a line would be divided into {:.1e} pieces, more than the {:.1e} that fit; {}", wanted,
+                    static_cast<double>(kMostTriangles), context.limit_advice));
   const auto pieces = static_cast<std::size_t>(std::fmax(1, std::round(wanted)));
   context.check_cells(pieces / 3);  // no triangle has more sides
   return pieces;

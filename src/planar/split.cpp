@@ -13,7 +13,7 @@ namespace delfront {
 
 namespace {
 
-constexpr std::size_t kSamples = 33;  ///< of the size along a piece, odd
+constexpr std::size_t kSamples = 33;              ///< of the size along a piece, odd
 constexpr double kLongest = std::numbers::sqrt2;  ///< of the size
 constexpr double kShortest = 0.1;     ///< of the size: no piece is halved below that, whoever stands in its circle
 constexpr double kAcuteCosine = 0.5;  ///< 60 degrees

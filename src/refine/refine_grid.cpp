@@ -233,13 +233,12 @@ std::vector<std::string> warnings_of(const RefineGridReport& report, const std::
     const std::string count = report.out_of_reach == report.boundary_points
                                   ? fmt::format("none of the {}", report.boundary_points)
                                   : fmt::format("{} of the {}", report.out_of_reach, report.boundary_points);
-    warnings.push_back(
-        fmt::format("{} new boundary points {} half an edge's length {} {}, e.g. ({:.9g}, {:.9g}, {:.9g}), from which "
-                    "it is {:.4g} away; they stay in the middle of their edges: does it lie elsewhere, or in other "
-                    "units?",
-                    count, report.out_of_reach == report.boundary_points ? "is within" : "are farther than",
-                    report.out_of_reach == report.boundary_points ? "of" : "from", geometry, at.x, at.y, at.z,
-                    report.farthest));
+    warnings.push_back(fmt::format(
+        "{} new boundary points {} half an edge's length {} {}, e.g. ({:.9g}, {:.9g}, {:.9g}), from which "
+        "it is {:.4g} away; they stay in the middle of their edges: does it lie elsewhere, or in other "
+        "units?",
+        count, report.out_of_reach == report.boundary_points ? "is within" : "are farther than",
+        report.out_of_reach == report.boundary_points ? "of" : "from", geometry, at.x, at.y, at.z, report.farthest));
   }
   if (!report.reversed_places.empty()) {
     const Point at = report.reversed_places[0].at;

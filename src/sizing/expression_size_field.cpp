@@ -104,7 +104,8 @@ using Direction = std::array<Expression, 3>;
 
 class ExpressionSizeField final : public SizeField {
  public:
-  ExpressionSizeField(const ExpressionSizes& in, Context& context) : delta_{compile("size", in.delta, in.names), "delta"} {
+  ExpressionSizeField(const ExpressionSizes& in, Context& context)
+      : delta_{compile("size", in.delta, in.names), "delta"} {
     if (in.s1) s1_ = Formula{compile("s1", *in.s1, in.names), "s1"};
     if (in.s2) s2_ = Formula{compile("s2", *in.s2, in.names), "s2"};
     if (s2_ && in.first && !in.second)

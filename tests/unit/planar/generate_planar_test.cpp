@@ -255,8 +255,8 @@ TEST(GeneratePlanar, T3_no_side_of_a_split_boundary_is_longer_than_the_square_ro
     const PlanarPrepared prepared = prepare_planar(domain, options, nullptr, context);
     double worst = 0;
     for (const PlanarPiece& piece : prepared.grid.pieces)
-      worst = std::max(worst, sizes_in(prepared.grid.complex.point[piece.a], prepared.grid.complex.point[piece.b],
-                                       *prepared.size));
+      worst = std::max(
+          worst, sizes_in(prepared.grid.complex.point[piece.a], prepared.grid.complex.point[piece.b], *prepared.size));
     EXPECT_LT(worst, 1.43);  // sizes are sampled
   }
 }
