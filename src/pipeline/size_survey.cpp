@@ -216,7 +216,7 @@ void refuse_too_many_cells(const PlanarPrepared& prepared, const SizeOptions& op
   if (context.max_cells == 0 || prepared.is_kept_too_long || !prepared.size->is_isotropic()) return;
   const std::uint64_t limit = context.max_cells >> (2 * levels);
   Box box;
-  for (const Point2 p : prepared.grid.complex.point) box.add({p.x, p.y, 0});
+  for (const Point2 p : prepared.grid.complex.point) box.add(Point{p.x, p.y, 0});
   if (most_cells(box, prepared.size->lower_bound(box), true) < static_cast<double>(limit)) return;
   const KeptDomain domain(prepared);
   refuse_over(limit, estimate_grid(domain, *prepared.size, growth_of(options), context, kFewLeaves), true, levels,
