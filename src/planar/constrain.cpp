@@ -154,10 +154,8 @@ void insert_segments(const PlanarDomain& domain, const std::vector<VertexIndex>&
   if (!without_length.empty()) {
     const std::size_t first = without_length[0];
     const Point2 p = domain.points[domain.segments[first][0]];
-    grid.warnings.push_back(fmt::format(
-        "{} segments of no length were left out, the first is segment {} (from 0), between points {} and "
-        "{} at ({:.9g}, {:.9g})",
-        without_length.size(), first, domain.segments[first][0].index(), domain.segments[first][1].index(), p.x, p.y));
+    grid.warnings.push_back(fmt::format("{} segments of no length were left out, the first at ({:.9g}, {:.9g})",
+                                        without_length.size(), p.x, p.y));
   }
   if (inserter.num_overlaps > 0)
     grid.warnings.push_back(fmt::format("{} segments lie on others; the first given stays", inserter.num_overlaps));

@@ -141,15 +141,18 @@ bool is_stretched(const Options& options, const SizeField& size) {
 }
 
 /// Points that circles ask for make short pieces, which lower the sizes beside them: then their neighbours are too
-/// long.
+/// long. Circles are looked at in the first rounds only: at sharp corners they and the sizes could lower each other for
+/// ever.
 void split_boundary(PlanarPrepared& prepared, const Options& options, double largest,
                     const std::shared_ptr<const SizeField>& asked, Context& context) {
-  constexpr int kMostRounds = 6;
+  constexpr int kMostRounds = 200, kRoundsOfCircles = 2;
   const bool in_metric = is_stretched(options, *prepared.size);
   for (int round = 0; round < kMostRounds; ++round) {
-    const std::size_t count = split_segments(prepared.grid, *prepared.size, in_metric, context);
+    // circles say nothing of stretched triangles
+    const bool by_circles = !in_metric && round < kRoundsOfCircles;
+    const std::size_t count = split_segments(prepared.grid, *prepared.size, in_metric, by_circles, context);
     // Short pieces across the direction of long triangles must not bound sizes along it.
-    if (in_metric || (round > 0 && count == 0)) return;
+    if (in_metric || (round >= kRoundsOfCircles && count == 0)) return;
     prepared.size = build_size_field(prepared.grid, options.size, largest, asked, context);
   }
 }

@@ -24,9 +24,9 @@ class Splitting {
   Splitting(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context)
       : grid_(grid), c_(grid.complex), size_(size), in_metric_(in_metric), context_(context) {}
 
-  std::size_t run() {
+  std::size_t run(bool by_circles) {
     split_by_size();
-    if (in_metric_) return count_;  // circles say nothing of stretched triangles
+    if (!by_circles) return count_;
     find_acute_corners();
     split_encroached();
     return count_;
@@ -197,9 +197,9 @@ class Splitting {
 
 }  // namespace
 
-std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context) {
+std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, bool by_circles, Context& context) {
   const StageTimer timer(context, "split");
-  return Splitting(grid, size, in_metric, context).run();
+  return Splitting(grid, size, in_metric, context).run(by_circles);
 }
 
 }  // namespace delfront

@@ -12,9 +12,10 @@ namespace delfront {
 /// rounded; that the triangles beside the piece stay positive is decided exactly, and a piece where they would not is
 /// left as it is. At a corner under 60 degrees the halves meet at powers of two of the distance on both sides, so that
 /// halving there ends.
-/// @param in_metric  lengths are those of the field's metric, and only they count: for triangles that are stretched
+/// @param in_metric   lengths are those of the field's metric: for triangles that are stretched
+/// @param by_circles  else only lengths count
 /// @return points put on segments
 /// @par Source  concentric shells: Ruppert (1995)
-std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context);
+std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, bool by_circles, Context& context);
 
 }  // namespace delfront
