@@ -25,6 +25,8 @@ namespace delfront {
 namespace {
 
 constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
+constexpr int kMaxRestarts = 80;
+constexpr int kRoundsToSeeProgress = 3;
 
 /// The mean length of the edges at each of the model's vertices.
 void set_model_sizes(TetComplex& complex, const Model& model, const Segments& segments) {
@@ -64,8 +66,7 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
       places);
 }
 
-[[noreturn]] void fail_at_edges(const Model& model, const Segments& segments, const std::vector<Piece>& hard,
-                                int rounds) {
+[[noreturn]] void fail_at_edges(const Model& model, const Segments& segments, const std::vector<Piece>& hard) {
   std::vector<Place> places;
   for (const Piece& piece : hard) {
     const auto& [a, b] = segments.ends[piece.edge];
@@ -74,10 +75,11 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
   const Point at = places[0].at;
   throw MeshingError(
       fmt::format(
-          "boundary recovery: {} edges are still missing after {} rounds with {} points put on edges, the first "
+          "boundary recovery: {} edges are missing, and points put on edges ({} so far) do not make them fewer, the "
+          "first "
           "near ({:g}, {:g}, {:g}): most often facets there are long and narrow and lie close to others; ask for "
           "smaller sizes there, or keep the given triangles (--surface-method keep)",
-          hard.size(), rounds, segments.steiner_edge.size(), at.x, at.y, at.z),
+          hard.size(), segments.steiner_edge.size(), at.x, at.y, at.z),
       places);
 }
 
@@ -204,7 +206,8 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
   std::vector<TriangleId> failed;
   std::vector<Piece> hard;
   const bool has_curves = segments.num_surface_edges < segments.ends.size();
-  for (int restart = 0; restart < effort.most_rounds; ++restart) {
+  std::size_t hard_at_first = 0;
+  for (int restart = 0; restart < kMaxRestarts; ++restart) {
     complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
     build_delaunay(complex, context);
@@ -212,9 +215,9 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     if (restart >= kMaxRestartsWithFlips) recover_segments(complex, kernel, model, segments, context);
     const EdgeSet required = pieces_of_edges(segments);
     hard = switch_to_edges(complex, model, segments, required, report, context);
-    context.progress(
-        "recover", static_cast<std::uint64_t>(restart), 0,
-        fmt::format("rounds, {} edges resist, {} points on edges", hard.size(), segments.steiner_edge.size()));
+    context.progress("recover", segments.steiner_edge.size(), 0, "points on edges");
+    if (restart == 0) hard_at_first = hard.size();
+    if (effort.gives_up && restart >= kRoundsToSeeProgress && hard.size() > hard_at_first) break;
     if (!hard.empty()) continue;
     subfaces.clear();
     std::size_t num_missing = 0;
@@ -225,7 +228,7 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     for (const TriangleId t : failed)
       for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
   }
-  if (!hard.empty()) fail_at_edges(model, segments, hard, effort.most_rounds);
+  if (!hard.empty()) fail_at_edges(model, segments, hard);
   if (failed.empty()) fail_at_curves(model);
   fail_at_facets(model, failed);
 }

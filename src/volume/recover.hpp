@@ -31,7 +31,7 @@ struct BoundaryGrid {
 
 /// @brief How long recovery goes on. Each round starts over, with a point more on every edge that resisted.
 struct RecoveryEffort {
-  int most_rounds = 80;  ///< from the 41st on every edge is made Delaunay
+  bool gives_up = false;  ///< where more edges resist after some rounds than at first: for those who have a way out
 };
 
 /// @brief A tetrahedrization whose faces include every given triangle, vertex for vertex, with regions coloured (T2).
