@@ -144,12 +144,12 @@ bool is_stretched(const Options& options, const SizeField& size) {
 /// long.
 void split_boundary(PlanarPrepared& prepared, const Options& options, double largest,
                     const std::shared_ptr<const SizeField>& asked, Context& context) {
-  constexpr int kMostRounds = 6;
+  constexpr int kLastRound = 12;  // halving may go on from neighbour to neighbour; then sizes stay as they are
   const bool in_metric = is_stretched(options, *prepared.size);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0;; ++round) {
     const std::size_t count = split_segments(prepared.grid, *prepared.size, in_metric, context);
     // Short pieces across the direction of long triangles must not bound sizes along it.
-    if (in_metric || (round > 0 && count == 0)) return;
+    if (in_metric || round == kLastRound || (round > 0 && count == 0)) return;
     prepared.size = build_size_field(prepared.grid, options.size, largest, asked, context);
   }
 }

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
 constexpr int kMaxRestarts = 80;
-constexpr int kRoundsToSeeProgress = 3;
+constexpr std::size_t kFewPoints = 1000;  ///< on edges: worth any time
 
 /// The mean length of the edges at each of the model's vertices.
 void set_model_sizes(TetComplex& complex, const Model& model, const Segments& segments) {
@@ -73,14 +73,13 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
     places.push_back({0.5 * (model.points[VertexId(a)] + model.points[VertexId(b)]), {a, b}});
   }
   const Point at = places[0].at;
-  throw MeshingError(
-      fmt::format(
-          "boundary recovery: {} edges are missing, and points put on edges ({} so far) do not make them fewer, the "
-          "first "
-          "near ({:g}, {:g}, {:g}): most often facets there are long and narrow and lie close to others; ask for "
-          "smaller sizes there, or keep the given triangles (--surface-method keep)",
-          hard.size(), segments.steiner_edge.size(), at.x, at.y, at.z),
-      places);
+  throw MeshingError(fmt::format("boundary recovery: {} edges are still missing with {} points put on edges, the first "
+                                 "near ({:g}, {:g}, {:g}): "
+                                 "most often facets there are long and narrow and lie close to others; ask for smaller "
+                                 "sizes there, or keep the "
+                                 "given triangles (--surface-method keep)",
+                                 hard.size(), segments.steiner_edge.size(), at.x, at.y, at.z),
+                     places);
 }
 
 [[noreturn]] void fail_at_curves(const Model& model) {
@@ -206,7 +205,6 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
   std::vector<TriangleId> failed;
   std::vector<Piece> hard;
   const bool has_curves = segments.num_surface_edges < segments.ends.size();
-  std::size_t hard_at_first = 0;
   for (int restart = 0; restart < kMaxRestarts; ++restart) {
     complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
@@ -216,8 +214,8 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     const EdgeSet required = pieces_of_edges(segments);
     hard = switch_to_edges(complex, model, segments, required, report, context);
     context.progress("recover", segments.steiner_edge.size(), 0, "points on edges");
-    if (restart == 0) hard_at_first = hard.size();
-    if (effort.gives_up && restart >= kRoundsToSeeProgress && hard.size() > hard_at_first) break;
+    const bool is_enough = effort.gives_up && segments.steiner_edge.size() > model.triangles.size() / 2 + kFewPoints;
+    if (!hard.empty() && is_enough) break;
     if (!hard.empty()) continue;
     subfaces.clear();
     std::size_t num_missing = 0;
@@ -227,6 +225,7 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     if (failed.empty() && (!has_curves || switch_to_curves(complex, model, segments, required, context))) return;
     for (const TriangleId t : failed)
       for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
+    if (is_enough) break;
   }
   if (!hard.empty()) fail_at_edges(model, segments, hard);
   if (failed.empty()) fail_at_curves(model);
