@@ -46,6 +46,12 @@ std::vector<Point2> divide_line(const std::vector<Point2>& through, bool closed,
   check_curve_points(through, closed);
   std::vector<Point2> points;
   const std::size_t pieces = through.size() - (closed ? 0 : 1);
+  double length = 0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const Point2 a = through[i], b = through[(i + 1) % through.size()];
+    length += std::hypot(b.x - a.x, b.y - a.y);
+  }
+  if (h > 0) number_of_pieces(length / h, context);  // of all
   for (std::size_t i = 0; i < pieces; ++i) {
     const Point2 a = through[i], b = through[(i + 1) % through.size()];
     const std::size_t parts = h > 0 ? number_of_pieces(std::hypot(b.x - a.x, b.y - a.y) / h, context) : 1;

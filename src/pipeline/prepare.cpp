@@ -60,10 +60,9 @@ BoundaryGrid regrid_and_recover(Model& model, const Options& options, const std:
                                 Report& report, Context& context) {
   const Model given = model;
   const SurfaceReport of_given = report.surface;
-  constexpr int kMostRounds = 10;  ///< slender rods would take minutes, and there is a way out
   try {
     regrid(model, options, asked, report, context);
-    return recover(model, options, report, context, {.most_rounds = kMostRounds});
+    return recover(model, options, report, context, {.gives_up = true});
   } catch (const MeshingError& e) {
     const Point at = e.places.empty() ? Point{} : e.places[0].at;
     context.warn(fmt::format("the new surface cannot be filled, the given triangles are kept: {}", e.what()));

@@ -145,14 +145,15 @@ bool is_stretched(const Options& options, const SizeField& size) {
 /// ever.
 void split_boundary(PlanarPrepared& prepared, const Options& options, double largest,
                     const std::shared_ptr<const SizeField>& asked, Context& context) {
-  constexpr int kMostRounds = 200, kRoundsOfCircles = 2;
+  constexpr int kRoundsOfCircles = 2;
+  constexpr int kLastRound = 50;  // halving may go on from neighbour to neighbour; then sizes stay as they are
   const bool in_metric = is_stretched(options, *prepared.size);
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0;; ++round) {
     // circles say nothing of stretched triangles
     const bool by_circles = !in_metric && round < kRoundsOfCircles;
     const std::size_t count = split_segments(prepared.grid, *prepared.size, in_metric, by_circles, context);
     // Short pieces across the direction of long triangles must not bound sizes along it.
-    if (in_metric || (round >= kRoundsOfCircles && count == 0)) return;
+    if (in_metric || round == kLastRound || (round >= kRoundsOfCircles && count == 0)) return;
     prepared.size = build_size_field(prepared.grid, options.size, largest, asked, context);
   }
 }

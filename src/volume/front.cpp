@@ -117,7 +117,10 @@ class Front {
  private:
   /// A grid that was asked of the front is not quite one.
   void warn_of_delaunay() const {
-    const double share = static_cast<double>(report_.closed_by_delaunay) / static_cast<double>(c_.num_live());
+    if (report_.closed_by_delaunay == 0) return;
+    std::size_t num_tets = 0;
+    for (TetIndex t = 0; t < c_.num_slots(); ++t) num_tets += !c_.is_dead(t) && !c_.is_ghost(t);
+    const double share = static_cast<double>(report_.closed_by_delaunay) / static_cast<double>(num_tets);
     if (share <= kMuchByDelaunay) return;
     const Point at = report_.delaunay_places.empty() ? Point{} : report_.delaunay_places[0].at;
     context_.warn(fmt::format(

@@ -25,6 +25,8 @@ namespace delfront {
 namespace {
 
 constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
+constexpr int kMaxRestarts = 80;
+constexpr std::size_t kFewPoints = 1000;  ///< on edges: worth any time
 
 /// The mean length of the edges at each of the model's vertices.
 void set_model_sizes(TetComplex& complex, const Model& model, const Segments& segments) {
@@ -64,21 +66,20 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
       places);
 }
 
-[[noreturn]] void fail_at_edges(const Model& model, const Segments& segments, const std::vector<Piece>& hard,
-                                int rounds) {
+[[noreturn]] void fail_at_edges(const Model& model, const Segments& segments, const std::vector<Piece>& hard) {
   std::vector<Place> places;
   for (const Piece& piece : hard) {
     const auto& [a, b] = segments.ends[piece.edge];
     places.push_back({0.5 * (model.points[VertexId(a)] + model.points[VertexId(b)]), {a, b}});
   }
   const Point at = places[0].at;
-  throw MeshingError(
-      fmt::format(
-          "boundary recovery: {} edges are still missing after {} rounds with {} points put on edges, the first "
-          "near ({:g}, {:g}, {:g}): most often facets there are long and narrow and lie close to others; ask for "
-          "smaller sizes there, or keep the given triangles (--surface-method keep)",
-          hard.size(), rounds, segments.steiner_edge.size(), at.x, at.y, at.z),
-      places);
+  throw MeshingError(fmt::format("boundary recovery: {} edges are still missing with {} points put on edges, the first "
+                                 "near ({:g}, {:g}, {:g}): "
+                                 "most often facets there are long and narrow and lie close to others; ask for smaller "
+                                 "sizes there, or keep the "
+                                 "given triangles (--surface-method keep)",
+                                 hard.size(), segments.steiner_edge.size(), at.x, at.y, at.z),
+                     places);
 }
 
 [[noreturn]] void fail_at_curves(const Model& model) {
@@ -204,7 +205,7 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
   std::vector<TriangleId> failed;
   std::vector<Piece> hard;
   const bool has_curves = segments.num_surface_edges < segments.ends.size();
-  for (int restart = 0; restart < effort.most_rounds; ++restart) {
+  for (int restart = 0; restart < kMaxRestarts; ++restart) {
     complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
     build_delaunay(complex, context);
@@ -212,9 +213,9 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     if (restart >= kMaxRestartsWithFlips) recover_segments(complex, kernel, model, segments, context);
     const EdgeSet required = pieces_of_edges(segments);
     hard = switch_to_edges(complex, model, segments, required, report, context);
-    context.progress(
-        "recover", static_cast<std::uint64_t>(restart), 0,
-        fmt::format("rounds, {} edges resist, {} points on edges", hard.size(), segments.steiner_edge.size()));
+    context.progress("recover", segments.steiner_edge.size(), 0, "points on edges");
+    const bool is_enough = effort.gives_up && segments.steiner_edge.size() > model.triangles.size() / 2 + kFewPoints;
+    if (!hard.empty() && is_enough) break;
     if (!hard.empty()) continue;
     subfaces.clear();
     std::size_t num_missing = 0;
@@ -224,8 +225,9 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     if (failed.empty() && (!has_curves || switch_to_curves(complex, model, segments, required, context))) return;
     for (const TriangleId t : failed)
       for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
+    if (is_enough) break;
   }
-  if (!hard.empty()) fail_at_edges(model, segments, hard, effort.most_rounds);
+  if (!hard.empty()) fail_at_edges(model, segments, hard);
   if (failed.empty()) fail_at_curves(model);
   fail_at_facets(model, failed);
 }

@@ -31,7 +31,9 @@ struct BoundaryGrid {
 
 /// @brief How long recovery goes on. Each round starts over, with a point more on every edge that resisted.
 struct RecoveryEffort {
-  int most_rounds = 80;  ///< from the 41st on every edge is made Delaunay
+  /// Where edges that resist have got half as many points as there are triangles, and a thousand: for those who have a
+  /// way out.
+  bool gives_up = false;
 };
 
 /// @brief A tetrahedrization whose faces include every given triangle, vertex for vertex, with regions coloured (T2).
