@@ -80,6 +80,7 @@ struct BrepAccuracy {
   double share_of_right_sides = 0;  ///< between 0.7 and 1.4 of the size at their middle
   double mean_side = 0;             ///< over the size at its middle
   std::vector<Patch> patches;
+  std::vector<std::uint32_t> faces_beyond;  ///< of the Brep, rising: with places beyond the goals
   bool is_reached() const { return deviation.num_beyond + turn_deg.num_beyond + angle_deg.num_beyond == 0; }
 };
 

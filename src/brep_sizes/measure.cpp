@@ -78,6 +78,9 @@ class Measurer {
     for (const Patch& patch : grid_.patches) made_.patches.push_back({patch.name, 0, 180, 0});
     look_at_triangles();
     look_at_sides();
+    std::vector<std::uint32_t>& faces = made_.faces_beyond;
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return std::move(made_);
   }
 
@@ -161,14 +164,17 @@ class Measurer {
                        [&](const SharpCorner& c) { return is_near(c.at, h * std::max(1.5, kSharpReach / c.angle)); });
   }
 
-  /// At the corners of a triangle sizes are to be this share of what its sides are, or of what is asked for.
+  /// At the corners and the middle of a triangle sizes are to be this share of what its sides are, or of what is asked
+  /// for.
   void lower(const FacePiece& p, double share) {
+    made_.faces_beyond.push_back(p.face);
     if (!lowered_) return;
     share = std::clamp(share, kLeastShare, kMostShare);
     const double side = (distance(p.at[0], p.at[1]) + distance(p.at[1], p.at[2]) + distance(p.at[2], p.at[0])) / 3;
-    std::array<double, 3> asked;
-    size_.sizes(p.at, asked);
-    for (std::size_t k = 0; k < 3; ++k) add_place(p.at[k], share * std::min(side, asked[k]));
+    const std::array<Point, 4> at = {p.at[0], p.at[1], p.at[2], (p.at[0] + p.at[1] + p.at[2]) / 3};
+    std::array<double, 4> asked;
+    size_.sizes(at, asked);
+    for (std::size_t k = 0; k < at.size(); ++k) add_place(at[k], share * std::min(side, asked[k]));
   }
   void add_place(Point at, double h) {
     lowered_->points.push_back(at);

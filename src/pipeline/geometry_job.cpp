@@ -18,7 +18,8 @@
 namespace delfront {
 namespace {
 
-constexpr double kDeviationMargin = 0.6;  ///< of the deviation: sizes are for that, so that few places are beyond
+constexpr double kDeviationMargin = 0.4;  ///< of the deviation: sizes are for that, so that few places are beyond
+constexpr double kUsualMargin = 0.3;      ///< the same where nothing is asked for: nothing but misses are beyond
 constexpr double kTurnMargin = 1.5;       ///< times that of cells a turn: neighbours that turn by more are regridded
 constexpr std::size_t kManySources = 200'000;
 
@@ -56,7 +57,7 @@ CurvatureSizes curvature_wish(const SizeOptions& size, const AccuracyNumbers& us
   if (size.deviation) wish.deviation = kDeviationMargin * size.deviation->value;
   if (!wish.cells_per_turn && !wish.angle_deg && !wish.deviation) {
     wish.cells_per_turn = usual.cells_per_turn;
-    if (is_automatic(size)) wish.deviation = kDeviationMargin * usual.deviation_share * extent;
+    if (is_automatic(size)) wish.deviation = kUsualMargin * usual.deviation_share * extent;
   }
   if (size.angle_form == "tangent") wish.form = CurvatureSizes::Form::tangent;
   return wish;

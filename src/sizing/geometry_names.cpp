@@ -64,9 +64,9 @@ double usual_hmin(const Model& model) {
 }
 
 AccuracyNumbers accuracy_numbers(const std::string& word) {
-  if (word == "coarse") return {10, 1e-2, 0.7, 0.5, 1.3, 0.1, 2e-3};
-  if (word == "fine") return {36, 5e-4, 2, 2, 1.15, 0.025, 2.5e-4};
-  return {18, 2e-3, 1, 1, 1.2, 0.05, 1e-3};
+  if (word == "coarse") return {10, 2e-2, 0.7, 0.5, 1.3, 0.1, 2e-3};
+  if (word == "fine") return {36, 1e-3, 2, 2, 1.15, 0.025, 2.5e-4};
+  return {18, 4e-3, 1, 1, 1.2, 0.05, 1e-3};
 }
 
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context) {

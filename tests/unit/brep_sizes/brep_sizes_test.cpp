@@ -33,6 +33,11 @@ Made grid(const std::string& text, const Options& options = {}, int threads = 1)
   GeometryInput input{0, made.brep, made.look};
   made.mesh = grid_geometry_to_goals(input, geometry_sizes(made.brep, made.look, options, nullptr, context), options,
                                      context, made.rounds);
+  if (std::getenv("SHOW"))
+    for (const BrepAccuracy& a : made.rounds.rounds)
+      fmt::print("      {} tri, angle {:.1f} ({}), off {:.4g} ({}), turn {:.1f} ({}), right {:.1f} %, side {:.3f}\n",
+                 a.triangles, a.angle_deg.value, a.angle_deg.num_beyond, a.deviation.value, a.deviation.num_beyond,
+                 a.turn_deg.value, a.turn_deg.num_beyond, 100 * a.share_of_right_sides, a.mean_side);
   return made;
 }
 
