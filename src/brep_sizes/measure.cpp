@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "base/parallel.hpp"
 #include "brep_sizes/size_parts.hpp"
+#include "geometry/angles.hpp"
 #include "geometry/surface.hpp"
 
 namespace delfront {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSharp = 30 * kDegree;  ///< corners of faces under it have sharp triangles whatever is done
 constexpr double kSharpReach = 0.5;      ///< over the angle in radians: sides from such a corner that do not count
 constexpr double kNearGoal = 0.7;        ///< of the goal: from there deviations are found exactly
@@ -26,7 +25,7 @@ constexpr std::size_t kGrain = 1024;
 constexpr std::size_t kAngleClasses = 12;
 
 struct Looked {
-  double angle = std::numbers::pi, deviation = 0, middle_deviation = 0, area = 0;
+  double angle = 180, deviation = 0, middle_deviation = 0, area = 0;
   Point deviation_at;
 };
 
@@ -47,7 +46,7 @@ std::vector<SharpCorner> find_sharp_corners(const Brep& brep) {
         const double ta = a.range[in.is_reversed ? 0 : 1], tb = b.range[out.is_reversed ? 1 : 0];
         const CurveDerivatives from = a.curve->derivatives(ta), to = b.curve->derivatives(tb);
         const Point back = (in.is_reversed ? 1.0 : -1.0) * from.first, on = (out.is_reversed ? -1.0 : 1.0) * to.first;
-        const double angle = std::atan2(length(cross(back, on)), dot(back, on));
+        const double angle = angle_between(back, on);
         const bool is_outside = dot(cross(on, back), face.surface->normal(in.curve->at(ta))) < 0;
         if (angle < kSharp && !is_outside) found.push_back({from.at, std::max(angle, 1e-3)});
       }
@@ -89,10 +88,7 @@ class Measurer {
     Looked it;
     const Point twice = cross(p.at[1] - p.at[0], p.at[2] - p.at[0]);
     it.area = 0.5 * length(twice);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Point u = p.at[(k + 1) % 3] - p.at[k], v = p.at[(k + 2) % 3] - p.at[k];
-      it.angle = std::min(it.angle, std::atan2(length(cross(u, v)), dot(u, v)));
-    }
+    it.angle = smallest_angle_deg(p.at[0], p.at[1], p.at[2]);
     const auto take = [&](Point at, Point2 uv) {
       const double away = deviation(*p.surface, at, uv);
       if (away > it.deviation) it.deviation = away, it.deviation_at = at;
@@ -119,20 +115,22 @@ class Measurer {
       for (std::size_t t = first; t < last; ++t) looked[t] = look(pieces_[t]);
     });
     double area = 0;
+    SmallestAngles angles;
     for (std::size_t t = 0; t < looked.size(); ++t) {
       const Looked& it = looked[t];
-      const double angle = it.angle / kDegree;
+      const double angle = it.angle;
       BrepAccuracy::Patch& patch = made_.patches[grid_.patch_of_triangle[TriangleId(t)].index()];
       ++patch.triangles;
       patch.min_angle_deg = std::min(patch.min_angle_deg, angle);
       patch.largest_deviation = std::max(patch.largest_deviation, it.deviation);
-      made_.min_angle_deg = std::min(made_.min_angle_deg, angle);
-      made_.mean_min_angle_deg += angle / double(looked.size());
+      angles.add(angle);
       ++made_.angles[std::min(kAngleClasses - 1, std::size_t(angle / 5))];
       made_.mean_deviation += it.area * it.middle_deviation;
       area += it.area;
       judge(pieces_[t], it, angle);
     }
+    made_.min_angle_deg = angles.min_deg;
+    made_.mean_min_angle_deg = angles.mean_deg();
     if (area > 0) made_.mean_deviation /= area;
   }
 
@@ -212,7 +210,7 @@ class Measurer {
     const FacePiece &p = pieces_[half[0] / 3], &q = pieces_[half[1] / 3];
     if (p.face != q.face || is_on_border(edges, e)) return;
     const Point a = cross(p.at[1] - p.at[0], p.at[2] - p.at[0]), b = cross(q.at[1] - q.at[0], q.at[2] - q.at[0]);
-    const double turn = std::atan2(length(cross(a, b)), dot(a, b));
+    const double turn = angle_between(a, b);
     if (turn <= made_.turn_deg.value * kDegree && turn <= goals_.turn_deg * kDegree) return;
     if (is_at_tip(p) || is_at_tip(q)) return;
     if (turn > made_.turn_deg.value * kDegree) made_.turn_deg.value = turn / kDegree, made_.turn_deg.at = middle;
