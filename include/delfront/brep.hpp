@@ -151,6 +151,7 @@ struct BrepOptions {
   int smoothing_passes = 6;
   bool checks_crossings = true;  ///< the whole surface, exactly
   bool keeps_parameters = false;  ///< BrepGridReport::corner_uv is filled
+  double least_size = 0;           ///< of sides that are made shorter for their turn
 };
 
 /// @brief One face's grid.

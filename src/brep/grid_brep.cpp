@@ -34,7 +34,7 @@ class BrepGridder {
         report_(report),
         context_(context),
         working_(size, nullptr),
-        wanted_(working_, options.most_turn_deg * kDegree),
+        wanted_(working_, options.most_turn_deg * kDegree, options.least_size),
         grids_(brep.faces.size()),
         failures_(brep.faces.size(), 0) {
     wanted_.find_tips(brep);

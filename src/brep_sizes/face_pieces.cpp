@@ -81,7 +81,11 @@ std::array<FacePiece, 4> FacePiece::quarters() const {
 }
 
 Point FacePiece::normal(Point2 where) const {
-  const Point n = surface->normal(where);
+  constexpr double kWellMapped = 1e-4;  // sine between tangents
+  const SurfaceTangents s = surface->tangents(where);
+  Point n = cross(s.u, s.v);
+  const double size = length(n);
+  n = size > kWellMapped * length(s.u) * length(s.v) ? n / size : surface->normal(where);
   return is_reversed ? -1.0 * n : n;
 }
 

@@ -8,7 +8,8 @@
 namespace delfront {
 namespace {
 
-constexpr double kLookShare = 0.05;  ///< of the extent: sides of the first grid
+constexpr double kLookShare = 0.05;   ///< of the extent: sides of the first grid
+constexpr double kLeastShare = 1e-3;  ///< of the extent: bends that need shorter ones are not followed
 
 class ConstantSize : public SizeField {
  public:
@@ -30,6 +31,7 @@ BrepLook look_at_brep(const Brep& brep, Context& context) {
   if (!(look.extent > 0)) throw InputError("the geometry has no extent: all of it is one place");
   BrepOptions how;
   how.checks_crossings = false;
+  how.least_size = kLeastShare * look.extent;
   how.keeps_parameters = true;
   Context quiet;  // a look only
   quiet.threads = context.threads;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaps between faces. From places on the true surface rays leave into the space to be gridded, along the normal and 30
-// degrees round it. The first face of the look that a ray leaves that space through ends it; chords of the face that it
-// starts on are met from the other side, and do not count. The other side of the gap is the place on the true face that
-// belongs to the nearest place of that triangle.
+// Gaps between faces. From places on the true surface rays leave into the space to be gridded, along the normal and,
+// where that sees none, 30 degrees round it. The first face of the look that a ray leaves that space through ends it;
+// chords of the face that it starts on are met from the other side, and do not count. The other side of the gap is the
+// place on the true face that belongs to the nearest place of that triangle.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,10 +19,10 @@ namespace delfront {
 namespace {
 
 constexpr double kTilt = std::numbers::pi / 6;
-constexpr int kTilted = 6;
-constexpr int kMostCuts = 7;           ///< of a piece, in four
-constexpr double kShortPiece = 0.005;  ///< of the extent: no shorter ones are cut
-constexpr double kInset = 0.05;        ///< of places near corners, from them to the middle
+constexpr int kTilted = 3;
+constexpr int kMostCuts = 7;          ///< of a piece, in four
+constexpr double kShortPiece = 0.01;  ///< of the extent: no shorter ones are cut
+constexpr double kInset = 0.05;       ///< of places near corners, from them to the middle
 constexpr std::size_t kGrain = 64;
 
 struct Opposite {
@@ -101,7 +101,7 @@ class BrepGaps {
     u = u / std::max(length(u), 1e-300);
     const Point v = cross(ahead, u);
     Opposite best;
-    for (int k = -1; k < kTilted; ++k) {
+    for (int k = -1; k < (best.distance < largest_ ? 0 : kTilted); ++k) {  // askew only where nothing is straight ahead
       const double turn = 2 * std::numbers::pi * k / kTilted;
       const Point direction =
           k < 0 ? ahead : std::cos(kTilt) * ahead + std::sin(kTilt) * (std::cos(turn) * u + std::sin(turn) * v);

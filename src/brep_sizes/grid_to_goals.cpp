@@ -43,6 +43,7 @@ Model grid_brep_to_goals(const Brep& brep, std::shared_ptr<const SizeField> size
                          const BrepGoals& goals, BrepRounds& report, Context& context) {
   BrepOptions how = options;
   how.keeps_parameters = true;
+  how.least_size = std::max(how.least_size, goals.hmin);
   report = {};
   Model best;
   BoundarySizes lowered;
