@@ -101,12 +101,16 @@ def blade(sections=9, places=48):
             x, y = 0.5 * chord * math.cos(a), chord * (0.12 - 0.04 * f) * math.sin(a) * (1 - 0.2 * math.cos(a))
             row.append((x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn), 0.2 + f))
         rows.append("[" + ", ".join(place(p) for p in row) + "]")
+        if s in (0, sections - 1):
+            yield table("corner", name=text("root end" if s == 0 else "tip end"), at=place(row[0]))
     yield table("surface", name=text("skin"), type=text("interpolated"), closed="true",
                 sections="[\n  " + ",\n  ".join(rows) + "\n]")
     for name, z, way in (("root plane", 0.2, -1), ("tip plane", 1.2, 1)):
         yield table("surface", name=text(name), type=text("plane"), origin=place((0, 0, z)), axis=f"[0, 0, {way}]")
-    for name, uv in {"root": "[[0, 0], [1, 0]]", "tip": "[[0, 1], [1, 1]]", "seam": "[[0, 0], [0, 1]]"}.items():
-        yield table("edge", name=text(name), type=text("on"), surface=text("skin"), uv=uv)
+    for name, uv, first, last in (("root", "[[0, 0], [1, 0]]", "root", "root"),
+                                  ("tip", "[[0, 1], [1, 1]]", "tip", "tip"), ("seam", "[[0, 0], [0, 1]]", "root", "tip")):
+        yield table("edge", name=text(name), type=text("on"), surface=text("skin"), uv=uv,
+                    **{"from": text(first + " end"), "to": text(last + " end")})
     yield table("face", name=text("blade"), kind=text("wall"), surface=text("skin"),
                 loops='[["root", "seam", "-tip", "-seam"]]')
     for name in ("root", "tip"):

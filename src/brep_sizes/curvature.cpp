@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostCuts = 6;       ///< of a piece, in four
 constexpr int kMostHalvings = 12;  ///< of a part of an edge
 constexpr int kPartsOfEdge = 16;
-constexpr double kShortPiece = 0.5;  ///< of the size: no use in cutting further
+constexpr double kShortPiece = 1;  ///< of the size: no use in cutting further
 constexpr std::size_t kGrain = 128;
 
 class CurvatureFinder {
