@@ -259,10 +259,11 @@ class JobCommand : public Command {
 
   static void print_geometry(const GeometryGrid& made) {
     const BrepAccuracy& a = made.rounds.last();
-    fmt::print("geometry       {} triangles, angles from {:.1f} (mean {:.1f}) degrees, at most {:.3g} off (mean {:.2g}), "
-               "{:.1f} % of sides right, {} round{}\n",
-               with_commas(a.triangles), a.min_angle_deg, a.mean_min_angle_deg, a.deviation.value, a.mean_deviation,
-               100 * a.share_of_right_sides, made.rounds.rounds.size(), made.rounds.rounds.size() == 1 ? "" : "s");
+    fmt::print(
+        "geometry       {} triangles, angles from {:.1f} (mean {:.1f}) degrees, at most {:.3g} off (mean {:.2g}), "
+        "{:.1f} % of sides right, {} round{}\n",
+        with_commas(a.triangles), a.min_angle_deg, a.mean_min_angle_deg, a.deviation.value, a.mean_deviation,
+        100 * a.share_of_right_sides, made.rounds.rounds.size(), made.rounds.rounds.size() == 1 ? "" : "s");
     if (!made.rounds.stopped.empty()) fmt::print("               {}\n", made.rounds.stopped);
   }
 

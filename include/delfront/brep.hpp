@@ -149,9 +149,9 @@ struct BrepOptions {
   double most_turn_deg = 40;     ///< sides are so short that neither edges nor surfaces turn by more along them
   double normal_angle_deg = 90;  ///< a triangle whose normal differs by more from a corner's is a failure
   int smoothing_passes = 6;
-  bool checks_crossings = true;  ///< the whole surface, exactly
+  bool checks_crossings = true;   ///< the whole surface, exactly
   bool keeps_parameters = false;  ///< BrepGridReport::corner_uv is filled
-  double least_size = 0;           ///< of sides that are made shorter for their turn
+  double least_size = 0;          ///< of sides that are made shorter for their turn
 };
 
 /// @brief One face's grid.

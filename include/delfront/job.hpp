@@ -71,10 +71,10 @@ struct JobResult {
   std::string stage;          ///< the last stage that was begun
 
   std::vector<InputFile> inputs;
-  LengthScale scale;  ///< of the input, before any far field
-  Mesh mesh;          ///< empty where the run failed
+  LengthScale scale;                   ///< of the input, before any far field
+  Mesh mesh;                           ///< empty where the run failed
   std::vector<GeometryGrid> geometry;  ///< one a file of smooth geometry that was gridded
-  Report report;      ///< filled as far as the run came; `surface.findings` also where the surface was refused
+  Report report;  ///< filled as far as the run came; `surface.findings` also where the surface was refused
 
   std::vector<std::string> failed_gates;   ///< sentences
   std::vector<std::string> files_written;  ///< grids, each complete

@@ -104,9 +104,8 @@ GeometrySources find_surface_sizes(const Options& options, const Model& model,
   if (asks_curvature && !turned.triangles.empty()) warn_of_coarse_facets(turned, curvature, context);
   const AccuracyNumbers usual = usual_numbers(size);
   if (asks_gap)
-    add_found(options, "size.gap", all, context, [&] {
-      return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells, is_kept), context);
-    });
+    add_found(options, "size.gap", all, context,
+              [&] { return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells, is_kept), context); });
   if (asks_lines)
     add_found(options, "size.proximity", all, context, [&] {
       return find_line_gap_sizes(turned, gap_wish(options, size.proximity, usual.line_cells), context);

@@ -175,11 +175,12 @@ Options options_for_looks(const Options& options, const Model& model, bool is_al
 void log_rounds(const GeometryGrid& made, Context& context) {
   for (std::size_t i = 0; i < made.rounds.rounds.size(); ++i) {
     const BrepAccuracy& a = made.rounds.rounds[i];
-    context.log(LogLevel::info,
-                fmt::format("{}, round {}: {} triangles, angles from {:.1f} degrees ({} places below the goal), at most "
-                            "{:.3g} off ({} beyond), neighbours turn by up to {:.1f} degrees ({} beyond)",
-                            made.file, i + 1, a.triangles, a.angle_deg.value, a.angle_deg.num_beyond, a.deviation.value,
-                            a.deviation.num_beyond, a.turn_deg.value, a.turn_deg.num_beyond));
+    context.log(
+        LogLevel::info,
+        fmt::format("{}, round {}: {} triangles, angles from {:.1f} degrees ({} places below the goal), at most "
+                    "{:.3g} off ({} beyond), neighbours turn by up to {:.1f} degrees ({} beyond)",
+                    made.file, i + 1, a.triangles, a.angle_deg.value, a.angle_deg.num_beyond, a.deviation.value,
+                    a.deviation.num_beyond, a.turn_deg.value, a.turn_deg.num_beyond));
   }
 }
 
@@ -372,7 +373,8 @@ void work_in_the_plane(Run& run) {
   const Model names = model_of(domain);
   const SizeOptions& size = run.options.size;
   std::function<bool(Point)> is_kept;
-  if (size.gap.cells > 0 || size.automatic.value_or(!size.accuracy.empty())) is_kept = kept_part(domain, far_field, run.options, run.context);
+  if (size.gap.cells > 0 || size.automatic.value_or(!size.accuracy.empty()))
+    is_kept = kept_part(domain, far_field, run.options, run.context);
   const std::shared_ptr<const SizeField> sizes =
       build_job_size_field(run.options, names, names.bounding_box(), run.context, is_kept);
   if (run.kind != JobKind::grid) return survey_plane(run, std::move(domain), far_field, sizes);

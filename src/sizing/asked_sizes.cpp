@@ -26,9 +26,7 @@ double growth_asked(const SizeOptions& options) {
   return options.growth.value_or(options.accuracy.empty() ? kDefaultGrowth : accuracy_numbers(options.accuracy).growth);
 }
 
-double growth_of_boundary(const SizeOptions& options) {
-  return steeper_growth(growth_asked(options), options.steeper);
-}
+double growth_of_boundary(const SizeOptions& options) { return steeper_growth(growth_asked(options), options.steeper); }
 
 bool has_field_everywhere(const SizeOptions& options) {
   return !options.expression.delta.empty() || !options.background.file.empty() || !options.solution.file.empty();
