@@ -257,6 +257,16 @@ class JobCommand : public Command {
     return static_cast<std::size_t>(std::min(unit * std::round(value / unit), 1e18));
   }
 
+  static void print_geometry(const GeometryGrid& made) {
+    const BrepAccuracy& a = made.rounds.last();
+    fmt::print(
+        "geometry       {} triangles, angles from {:.1f} (mean {:.1f}) degrees, at most {:.3g} off (mean {:.2g}), "
+        "{:.1f} % of sides right, {} round{}\n",
+        with_commas(a.triangles), a.min_angle_deg, a.mean_min_angle_deg, a.deviation.value, a.mean_deviation,
+        100 * a.share_of_right_sides, made.rounds.rounds.size(), made.rounds.rounds.size() == 1 ? "" : "s");
+    if (!made.rounds.stopped.empty()) fmt::print("               {}\n", made.rounds.stopped);
+  }
+
   static void print_summary(const JobResult& result, const Options& options) {
     print_mesh_facts(result.mesh);
     const QualityReport& quality = result.report.quality;
@@ -267,6 +277,7 @@ class JobCommand : public Command {
     if (grid.triangles)
       fmt::print("new surface    {} triangles (given: {}), angles from {:.1f} degrees, at most {:.3g} off\n",
                  grid.triangles, grid.triangles_given, grid.min_angle_deg, grid.largest_distance);
+    for (const GeometryGrid& made : result.geometry) print_geometry(made);
     if (const FrontReport& front = result.report.front; front.sweeps > 0)
       fmt::print("front          {} sweeps, {} cavities left by them, {} cells in them made by Delaunay\n",
                  front.sweeps, front.cavities, with_commas(front.closed_by_delaunay));

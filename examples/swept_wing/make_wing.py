@@ -40,8 +40,12 @@ def table(what, **fields):
 
 
 def wing(points, thickness):
-    root = section(ROOT_CHORD, 0.0, 0.0, points, thickness)
-    tip = section(TIP_CHORD, SEMISPAN * math.tan(SWEEP), SEMISPAN, points, thickness)
+    yield from between(section(ROOT_CHORD, 0.0, 0.0, points, thickness),
+                       section(TIP_CHORD, SEMISPAN * math.tan(SWEEP), SEMISPAN, points, thickness))
+
+
+def between(root, tip):
+    """The wing straight from one section to the other, flat at both ends and behind."""
     rows = [",\n".join("    " + place(p) for p in places) for places in (root, tip)]
     slant = tip[0][0] - root[0][0]  # of the trailing edge
     yield table("surface", name='"skin"', type='"interpolated"', sections="[\n  [\n" + "\n  ],\n  [\n".join(rows) + "\n  ]\n]")

@@ -149,7 +149,9 @@ struct BrepOptions {
   double most_turn_deg = 40;     ///< sides are so short that neither edges nor surfaces turn by more along them
   double normal_angle_deg = 90;  ///< a triangle whose normal differs by more from a corner's is a failure
   int smoothing_passes = 6;
-  bool checks_crossings = true;  ///< the whole surface, exactly
+  bool checks_crossings = true;   ///< the whole surface, exactly
+  bool keeps_parameters = false;  ///< BrepGridReport::corner_uv is filled
+  double least_size = 0;          ///< of sides that are made shorter for their turn
 };
 
 /// @brief One face's grid.
@@ -173,6 +175,9 @@ struct BrepGridReport {
   std::vector<BrepFaceReport> faces;
   /// One a point of the model: the corner, edge or face of the Brep that it lies on; t is in u for edges.
   std::vector<VertexEntity> entity;
+  /// One a triangle, where asked for: the parameters of its corners in the plane of its face. Those of a pole say
+  /// nothing along the degenerate side; a seam's may be a period off those of the other corners.
+  std::vector<std::array<Point2, 3>> corner_uv;
 };
 
 /// @brief Grid smooth geometry: triangles whose points lie on it, sides as long as the size field asks (F3, F4).

@@ -137,6 +137,20 @@ struct AutomaticSizes {
   std::function<bool(Point)> is_kept = {};  ///< as GapSizes::is_kept
 };
 
+/// @brief What a word of size.accuracy stands for, where nothing else is said.
+struct AccuracyNumbers {
+  double cells_per_turn;   ///< of curved surfaces and edges
+  double deviation_share;  ///< of the grid from smooth geometry, of its extent
+  double line_cells;       ///< between lines that come close
+  double gap_cells;        ///< between faces
+  double growth;
+  double hmax_share;  ///< of smooth geometry, of its extent
+  double hmin_share;  ///< of its extent: of curvature, lines and gaps. Facets: 1e-3 of the diagonal whatever is said
+};
+
+/// @param word  coarse, medium, fine; anything else is medium
+AccuracyNumbers accuracy_numbers(const std::string& word);
+
 /// @return 1e-3 of the diagonal of the model's surface: the hmin where none is given
 double usual_hmin(const Model& model);
 

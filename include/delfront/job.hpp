@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "delfront/brep_sizes.hpp"
 #include "delfront/context.hpp"
 #include "delfront/generate.hpp"
 #include "delfront/model.hpp"
@@ -56,6 +57,12 @@ struct Estimate {
   bool is_at_least = false;                  ///< sizes are finer in places than was looked at
 };
 
+/// @brief The surface grid of a file of smooth geometry.
+struct GeometryGrid {
+  std::string file;
+  BrepRounds rounds;  ///< with refine.levels: of the final sizes
+};
+
 /// @brief How a job ended and all that a front end may want to show.
 struct JobResult {
   ExitCode exit_code = ExitCode::done;
@@ -64,9 +71,10 @@ struct JobResult {
   std::string stage;          ///< the last stage that was begun
 
   std::vector<InputFile> inputs;
-  LengthScale scale;  ///< of the input, before any far field
-  Mesh mesh;          ///< empty where the run failed
-  Report report;      ///< filled as far as the run came; `surface.findings` also where the surface was refused
+  LengthScale scale;                   ///< of the input, before any far field
+  Mesh mesh;                           ///< empty where the run failed
+  std::vector<GeometryGrid> geometry;  ///< one a file of smooth geometry that was gridded
+  Report report;  ///< filled as far as the run came; `surface.findings` also where the surface was refused
 
   std::vector<std::string> failed_gates;   ///< sentences
   std::vector<std::string> files_written;  ///< grids, each complete

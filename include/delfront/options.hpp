@@ -152,7 +152,10 @@ struct SizeOptions {
   double angle = 0;                 ///< degrees between neighbouring faces; 0: not asked for
   std::string angle_form = "sine";  ///< sine, exact for inscribed faces; tangent: eq. 3.20
   std::optional<Length> deviation;  ///< of chords from the surface
-  bool automatic = false;           ///< curvature, gap and proximity with their defaults, where they are not given
+  std::string accuracy;             ///< coarse medium fine: the numbers of all that is not given (AccuracyNumbers)
+  /// curvature, gap and proximity with their defaults, where they are not given; absent: of smooth geometry, or where
+  /// accuracy is given
+  std::optional<bool> automatic;
   GapOptions gap;
   GapOptions proximity;  ///< of curves within a patch
   ExpressionOptions expression;

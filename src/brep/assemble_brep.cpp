@@ -11,11 +11,12 @@ namespace {
 class Assembly {
  public:
   Assembly(const Brep& brep, const Array<EdgeId, EdgePoints>& edges, std::size_t num_vertices,
-           std::vector<VertexEntity>& entity)
-      : brep_(brep), edges_(edges), entity_(entity), number_(num_vertices) {}
+           std::vector<VertexEntity>& entity, std::vector<std::array<Point2, 3>>* corner_uv)
+      : brep_(brep), edges_(edges), entity_(entity), corner_uv_(corner_uv), number_(num_vertices) {}
 
   Model run(const Array<FaceId, FaceGrid>& grids) {
     entity_.clear();
+    if (corner_uv_) corner_uv_->clear();
     find_seams();
     add_vertices(grids);
     for (std::size_t f = 0; f < grids.size(); ++f) add_face(FaceId(f), grids[FaceId(f)]);
@@ -83,6 +84,8 @@ class Assembly {
       model_.triangles.push_back({local[t[0]], local[t[second]], local[t[3 - second]]});
       model_.patch_of_triangle.push_back(patch);
       model_.input_face.push_back(f.value);
+      if (corner_uv_)
+        corner_uv_->push_back({grid.points[t[0]].uv, grid.points[t[second]].uv, grid.points[t[3 - second]].uv});
     }
   }
 
@@ -116,6 +119,7 @@ class Assembly {
   const Brep& brep_;
   const Array<EdgeId, EdgePoints>& edges_;
   std::vector<VertexEntity>& entity_;
+  std::vector<std::array<Point2, 3>>* corner_uv_;  ///< null: not wanted
   Model model_;
   std::vector<VertexId> number_;  ///< by vertex of the Brep's edges
   std::vector<bool> is_seam_;
@@ -125,8 +129,9 @@ class Assembly {
 }  // namespace
 
 Model assemble_brep(const Brep& brep, const Array<EdgeId, EdgePoints>& edges, const Array<FaceId, FaceGrid>& grids,
-                    std::size_t num_vertices, std::vector<VertexEntity>& entity) {
-  return Assembly(brep, edges, num_vertices, entity).run(grids);
+                    std::size_t num_vertices, std::vector<VertexEntity>& entity,
+                    std::vector<std::array<Point2, 3>>* corner_uv) {
+  return Assembly(brep, edges, num_vertices, entity, corner_uv).run(grids);
 }
 
 }  // namespace delfront

@@ -15,6 +15,12 @@ constexpr double kLeastAround = 1e-3;                      ///< of the widest: a
 constexpr double kLeastUnrolled = 1.3 * std::numbers::pi;  ///< with less, few triangles at the tip turn by too much
 constexpr double kFullTurn = 1 - 1e-9;                     ///< of a period
 
+/// So that charts of scaled copies are the same.
+std::vector<double> in_units(std::vector<double> values, double unit) {
+  for (double& value : values) value /= unit;
+  return values;
+}
+
 }  // namespace
 
 RisingTable::RisingTable(double first, double step, std::vector<double> values)
@@ -56,7 +62,7 @@ Chart::Chart(const SmoothSurface& surface, const ParameterBox& box, Pole pole) :
 void Chart::make_linear(const ParameterBox& box) {
   const double wide = box.high.x - box.low.x, tall = box.high.y - box.low.y;
   const auto table = [&](bool along_u) {
-    const double first = along_u ? box.low.x : box.low.y, step = (along_u ? wide : tall) / kPieces;
+    const double step = (along_u ? wide : tall) / kPieces;
     std::vector<double> lengths(kPieces), values = {0};
     double all = 0;
     for (int i = 0; i < kPieces; ++i) {
@@ -69,10 +75,12 @@ void Chart::make_linear(const ParameterBox& box) {
       all += lengths[std::size_t(i)];
     }
     for (const double l : lengths) values.push_back(values.back() + std::max(l, 1e-3 * all / kPieces) * step);
-    return RisingTable(first, step, std::move(values));
+    return values;
   };
-  u_ = table(true);
-  v_ = table(false);
+  std::vector<double> u = table(true), v = table(false);
+  const double unit = std::max(u.back(), v.back());
+  u_ = RisingTable(box.low.x, wide / kPieces, in_units(std::move(u), unit));
+  v_ = RisingTable(box.low.y, tall / kPieces, in_units(std::move(v), unit));
 }
 
 void Chart::make_polar(const ParameterBox& box) {
@@ -113,6 +121,8 @@ void Chart::make_polar(const ParameterBox& box) {
     s += ds;
     values.push_back(std::max(s * std::exp(log_over), values.back() * (1 + 1e-9)));
   }
+  const double unit = values.back();
+  values = in_units(std::move(values), unit);
   smallest_ = 1e-9 * values[1];
   radius_ = RisingTable(0, step, std::move(values));
 }

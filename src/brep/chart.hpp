@@ -28,7 +28,7 @@ class RisingTable {
 /// linear: u and v, each stretched to the mean length along it. polar: round a degenerate side, which is the origin;
 /// the angle is that parameter along it, the radius such that the metric of a surface of revolution is the same
 /// multiple in both directions everywhere but for a constant: on a sphere the stereographic projection; a cone is
-/// unrolled. Both keep the orientation of (u, v).
+/// unrolled. Both keep the orientation of (u, v), and are about 1 wide.
 class Chart {
  public:
   enum class Pole : std::uint8_t { none, u_low, u_high, v_low, v_high };

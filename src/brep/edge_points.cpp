@@ -11,7 +11,14 @@ namespace {
 constexpr std::size_t kLeastPanels = 32, kMostPanels = std::size_t(1) << 22;
 constexpr double kPanelsPerSide = 8;
 constexpr double kConverged = 1e-4;  ///< change of the integral, of itself
-constexpr double kAlmost = 1e-9;     ///< below the half that is rounded up, so that equal curves get equal numbers
+constexpr double kAlmost = 1e-9;     ///< of where one more part is taken, so that equal curves get equal numbers
+
+/// To 24 bits of the range: rounding, which a turned or scaled copy has otherwise, does not change a grid.
+double rounded(double t, std::array<double, 2> range) {
+  constexpr double kSteps = 1 << 24;
+  const double share = std::round((t - range[0]) / (range[1] - range[0]) * kSteps) / kSteps;
+  return (1 - share) * range[0] + share * range[1];
+}
 
 /// 1/h times the speed at equal steps of t: what adds up to the number of sides.
 std::vector<double> sample_density(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
@@ -55,7 +62,10 @@ std::vector<double> divide_curve(const std::function<CurveSample(double)>& sampl
     before = now;
   }
   const double all = sum.back();
-  const auto parts = std::max(least, std::size_t(std::floor(all + 0.5 + kAlmost)));
+  // as many as make sides longer or shorter than wanted by the least factor: of at most sqrt(2), but of one short side
+  const double fewer = std::floor(all);
+  const bool takes_more = all * all * (1 + kAlmost) >= fewer * (fewer + 1);
+  const auto parts = std::max(least, std::size_t(fewer) + (takes_more ? 1 : 0));
   const double step = (range[1] - range[0]) / double(sum.size() - 1);
   std::vector<double> t = {range[0]};
   std::size_t i = 0;
@@ -65,7 +75,8 @@ std::vector<double> divide_curve(const std::function<CurveSample(double)>& sampl
     // within a panel the density goes evenly from one value to the other, up to a factor
     const double a = density[i], b = density[i + 1], f = (wanted - sum[i]) / (sum[i + 1] - sum[i]) * 0.5 * (a + b);
     const double root = std::sqrt(std::max(a * a + 2 * (b - a) * f, 0.0));
-    t.push_back(range[0] + step * (double(i) + 2 * f / (a + root)));
+    const double next = range[0] + step * (double(i) + 2 * f / (a + root)), even = rounded(next, range);
+    t.push_back(even > t.back() && even < range[1] ? even : next);
   }
   t.push_back(range[1]);
   return t;

@@ -34,7 +34,7 @@ class BrepGridder {
         report_(report),
         context_(context),
         working_(size, nullptr),
-        wanted_(working_, options.most_turn_deg * kDegree),
+        wanted_(working_, options.most_turn_deg * kDegree, options.least_size),
         grids_(brep.faces.size()),
         failures_(brep.faces.size(), 0) {
     wanted_.find_tips(brep);
@@ -47,7 +47,8 @@ class BrepGridder {
       divide();
       parallel_for(context_.threads, grids_.size(), [&](std::size_t f) { grid_face(FaceId(f)); });
       if (!mend_faces()) continue;
-      Model model = assemble_brep(brep_, edges_, grids_, num_vertices_, report_.entity);
+      Model model = assemble_brep(brep_, edges_, grids_, num_vertices_, report_.entity,
+                                  options_.keeps_parameters ? &report_.corner_uv : nullptr);
       if (options_.checks_crossings && !mend_crossings(model)) continue;
       fill_report(model);
       return model;

@@ -26,6 +26,18 @@ constexpr std::size_t kMostOfLoop = 200;
 constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
 constexpr int kPoleDirections = 8;
 
+constexpr int kMetricBits = 14;     ///< of metrics, and ...
+constexpr double kSteps = 1 << 28;  ///< ... steps a unit of a chart's border: see rounded()
+
+/// Turned and scaled copies of a model differ in their last bits. Where numbers tie, as they do all over shapes with
+/// symmetry, that would give each another grid: so the front sees numbers without those bits.
+double rounded(double value, double unit) {
+  if (!(unit > 0) || !std::isfinite(unit)) return value;
+  const double step = std::ldexp(1.0, std::ilogb(unit) - kMetricBits);
+  return step * std::round(value / step);
+}
+Point2 rounded(Point2 xy) { return {std::round(xy.x * kSteps) / kSteps, std::round(xy.y * kSteps) / kSteps}; }
+
 /// What a chart asks of lengths in it: M = J^T J / h^2.
 class ChartMetric : public SizeField {
  public:
@@ -59,10 +71,11 @@ class ChartMetric : public SizeField {
   Metric metric_of(const Chart::Place& place, double h) const {
     if (is_lowered_) h = size_.lowered(h, largest_curvature(chart_.surface().derivatives(place.uv)), place.at);
     const double f = 1 / (h * h);
+    const double xx = f * dot(place.x, place.x), yy = f * dot(place.y, place.y);
     Metric m;
-    m.xx = f * dot(place.x, place.x);
-    m.xy = f * dot(place.x, place.y);
-    m.yy = f * dot(place.y, place.y);
+    m.xx = rounded(xx, xx);
+    m.xy = rounded(f * dot(place.x, place.y), std::sqrt(xx * yy));
+    m.yy = rounded(yy, yy);
     return m;
   }
   /// It has no direction there.
@@ -74,7 +87,7 @@ class ChartMetric : public SizeField {
       sum += 0.5 * (m.xx + m.yy) / kPoleDirections;
     }
     Metric m;
-    m.xx = m.yy = sum;
+    m.xx = m.yy = rounded(sum, sum);
     return m;
   }
 
@@ -206,7 +219,7 @@ class ChartedPart {
   VertexIndex chart_point(std::uint32_t p) {
     if (const auto known = number_.find(p); known != number_.end()) return known->second;
     const FacePoint& point = grid_.points[p];
-    Point2 xy = chart_.to_chart(point.uv);
+    Point2 xy = rounded(chart_.to_chart(point.uv));
     if (point.is_pole && chart_.is_polar()) xy = {0, 0};
     if (chart_.is_polar() && point.vertex != kNoVertex) {
       const auto [first, last] = copies_.equal_range(point.vertex);

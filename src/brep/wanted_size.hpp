@@ -13,7 +13,9 @@ namespace delfront {
 class WantedSize {
  public:
   /// @param most_turn  radians that a side may turn
-  WantedSize(const SizeField& asked, double most_turn) : asked_(asked), most_turn_(most_turn) {}
+  /// @param least      sizes are not lowered below it
+  WantedSize(const SizeField& asked, double most_turn, double least = 0)
+      : asked_(asked), most_turn_(most_turn), least_(least) {}
 
   const SizeField& asked() const { return asked_; }
 
@@ -23,7 +25,7 @@ class WantedSize {
   /// @brief What is left of an asked size where so much is bent.
   double lowered(double asked, double curvature, Point at) const {
     if (!(asked * curvature > most_turn_)) return asked;
-    double allowed = most_turn_ / curvature;
+    double allowed = std::max(most_turn_ / curvature, least_);
     for (const Tip& tip : tips_)
       allowed = std::max(allowed, kTipShare * std::max(distance(at, tip.at), std::min(kTipCells * asked, tip.least)));
     return std::min(asked, allowed);
@@ -42,6 +44,7 @@ class WantedSize {
   const SizeField& asked_;
   double most_turn_;
   std::vector<Tip> tips_;
+  double least_;
 };
 
 }  // namespace delfront

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sizes follow from the true curvature at the points of a first, coarse grid: it is fine already where the geometry
-// turns by more than a side may, so that its points and those along borders see every bend.
+// Sizes of smooth geometry: what its shape asks for (delfront/brep_sizes.hpp) by the numbers of the job, with what else
+// is asked for.
 #include "pipeline/geometry_job.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,16 +11,17 @@
 
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
+#include "delfront/size_sources.hpp"
 #include "pipeline/boundaries.hpp"
 #include "sizing/asked_sizes.hpp"
 
 namespace delfront {
 namespace {
 
-constexpr double kLargestShare = 0.05;  ///< of the diagonal, where no largest size is given
-constexpr double kLeastShare = 1e-3;    ///< of the diagonal, from curvature, where no least size is given
-constexpr double kCellsPerTurn = 18;
-constexpr int kSamples = 24;  ///< along each edge, for the box
+constexpr double kDeviationMargin = 0.4;  ///< of the deviation: sizes are for that, so that few places are beyond
+constexpr double kUsualMargin = 0.3;      ///< the same where nothing is asked for: nothing but misses are beyond
+constexpr double kTurnMargin = 1.5;       ///< times that of cells a turn: neighbours that turn by more are regridded
+constexpr std::size_t kManySources = 200'000;
 
 /// The same size everywhere.
 class ConstantSize : public SizeField {
@@ -32,123 +35,107 @@ class ConstantSize : public SizeField {
   double h_;
 };
 
-/// Of the edges, and of places within the loops' boxes where a face has no edge but its seam.
-Box box_of(const Brep& brep) {
-  Box box;
-  for (const BrepFace& face : brep.faces)
-    for (const auto& loop : face.loops) {
-      Box in_plane;
-      for (const BrepUse& use : loop) {
-        const auto& range = brep.edges[use.edge].range;
-        for (int i = 0; i <= kSamples; ++i) {
-          const Point2 uv = use.curve->at(range[0] + (range[1] - range[0]) * i / kSamples);
-          in_plane.add(Point{uv.x, uv.y, 0});
-          box.add(face.surface->at(uv));
-        }
-      }
-      if (&loop != &face.loops[0]) continue;
-      const Point size = in_plane.high - in_plane.low;
-      for (int i = 0; i <= kSamples; ++i)
-        for (int j = 0; j <= kSamples; ++j)
-          box.add(face.surface->at({in_plane.low.x + size.x * i / kSamples, in_plane.low.y + size.y * j / kSamples}));
-    }
-  return box;
+/// Which space is gridded: gaps matter there.
+GapSizes::Side gridded_side(const DomainOptions& domain) {
+  const bool has_outside = domain.enclose.shape != "none";
+  if (!domain.keep_points.empty()) return GapSizes::Side::both;
+  if (domain.keep.empty()) return has_outside ? GapSizes::Side::ahead : GapSizes::Side::behind;
+  return domain.keep == "outside" ? GapSizes::Side::ahead : GapSizes::Side::both;
 }
 
-CurvatureSizes curvature_wish(const SizeOptions& size, double hmin, double hmax) {
+/// By itself the shape asks for nothing where something else has an opinion everywhere.
+bool is_automatic(const SizeOptions& size) { return size.automatic.value_or(!has_field_everywhere(size)); }
+
+double cells_of(const GapOptions& asked, double usual, bool is_automatic) {
+  return asked.cells > 0 ? asked.cells : is_automatic ? usual : 0;
+}
+
+CurvatureSizes curvature_wish(const SizeOptions& size, const AccuracyNumbers& usual, double extent) {
   CurvatureSizes wish;
   if (size.curvature > 0) wish.cells_per_turn = size.curvature;
   if (size.angle > 0) wish.angle_deg = size.angle;
-  if (size.deviation) wish.deviation = size.deviation->value;
-  if (!wish.cells_per_turn && !wish.angle_deg && !wish.deviation) wish.cells_per_turn = kCellsPerTurn;
+  if (size.deviation) wish.deviation = kDeviationMargin * size.deviation->value;
+  if (!wish.cells_per_turn && !wish.angle_deg && !wish.deviation) {
+    wish.cells_per_turn = usual.cells_per_turn;
+    if (is_automatic(size)) wish.deviation = kUsualMargin * usual.deviation_share * extent;
+  }
   if (size.angle_form == "tangent") wish.form = CurvatureSizes::Form::tangent;
-  wish.hmin = hmin;
-  wish.hmax = hmax;
   return wish;
 }
 
-/// Sizes at places by what bends there.
-class Bends {
- public:
-  Bends(const CurvatureSizes& wish, double growth) : wish_(wish) {
-    found_.growth = growth;
-    found_.hmin = wish.hmin;
-    found_.hmax = wish.hmax;
-  }
-  void add(const SurfaceDerivatives& s) { add(s.at, largest_curvature(s)); }
-  void add(const CurveDerivatives& c) {
-    const double speed = length(c.first);
-    if (speed > 0) add(c.at, length(cross(c.first, c.second)) / (speed * speed * speed));
-  }
-  BoundarySizes take() { return std::move(found_); }
+/// The wish of the whole, for an extent.
+BrepSizes geometry_wish(const Options& options, double extent, bool has_field) {
+  const SizeOptions& size = options.size;
+  const AccuracyNumbers usual = accuracy_numbers(size.accuracy);
+  BrepSizes wish;
+  wish.hmax = size.hmax ? size.hmax->value : has_field ? extent : size.steeper * usual.hmax_share * extent;
+  wish.hmin = std::min(wish.hmax, size.hmin ? size.hmin->value : usual.hmin_share * extent);
+  wish.curvature = curvature_wish(size, usual, extent);
+  wish.line_cells = cells_of(size.proximity, usual.line_cells, is_automatic(size));
+  wish.gap_cells = cells_of(size.gap, usual.gap_cells, is_automatic(size));
+  if (size.proximity.hmin) wish.line_hmin = size.proximity.hmin->value;
+  if (size.gap.hmin) wish.gap_hmin = size.gap.hmin->value;
+  wish.gap_side = gridded_side(options.domain);
+  return wish;
+}
 
- private:
-  void add(Point at, double curvature) {
-    if (!(curvature > 0) || !is_finite(at)) return;
-    const double h = std::max(size_on_radius(1 / curvature, wish_), wish_.hmin);
-    if (!(h < wish_.hmax)) return;
-    found_.points.push_back(at);
-    found_.size.push_back(h);
-  }
-  CurvatureSizes wish_;
-  BoundarySizes found_;
-};
-
-BoundarySizes find_bends(const Brep& brep, const std::vector<VertexEntity>& points, Bends bends) {
-  std::vector<std::vector<double>> along(brep.edges.size());
-  for (const VertexEntity& p : points) {
-    if (p.dimension == 1) along[p.id].push_back(p.u);
-    if (p.dimension == 2) bends.add(brep.faces[FaceId(std::size_t(p.id))].surface->derivatives({p.u, p.v}));
-  }
-  for (std::size_t e = 0; e < along.size(); ++e) {
-    const BrepEdge& edge = brep.edges[EdgeId(e)];
-    along[e].insert(along[e].end(), {edge.range[0], edge.range[1]});
-    std::sort(along[e].begin(), along[e].end());
-    for (std::size_t i = along[e].size() - 1; i > 0; --i) along[e].push_back(0.5 * (along[e][i] + along[e][i - 1]));
-    if (!edge.is_degenerate())
-      for (const double t : along[e]) bends.add(edge.curve->derivatives(t));
-  }
-  for (const BrepFace& face : brep.faces)
-    for (const auto& loop : face.loops)
-      for (const BrepUse& use : loop)
-        for (const double t : along[use.edge.index()]) bends.add(face.surface->derivatives(use.curve->at(t)));
-  return bends.take();
+BrepOptions gridding_options(const Options& options) {
+  BrepOptions how;
+  if (options.surface.method == "front") how.method = BrepOptions::Method::direct;
+  return how;
 }
 
 }  // namespace
 
-std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const Options& options,
+std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook& look, const Options& options,
                                                 std::shared_ptr<const SizeField> asked, Context& context) {
-  check_brep(brep);
-  const double diagonal = box_of(brep).diagonal();
-  const SizeOptions& size = options.size;
-  const double hmax = size.hmax                             ? size.hmax->value
-                      : asked && has_field_everywhere(size) ? diagonal
-                                                            : size.steeper * kLargestShare * diagonal;
-  const double hmin = std::min(hmax, size.hmin ? size.hmin->value : kLeastShare * diagonal);
-  BrepGridReport first;
-  Context quiet;  // a look only
-  quiet.threads = context.threads;
-  BrepOptions how;
-  how.checks_crossings = false;
-  grid_brep(brep, ConstantSize(std::max(hmin, std::min(hmax, kLargestShare * diagonal))), how, first, quiet);
-  const double growth = size.growth.value_or(kDefaultGrowth);
-  BoundarySizes bends = find_bends(brep, first.entity, Bends(curvature_wish(size, hmin, hmax), growth));
-  std::vector<std::shared_ptr<const SizeField>> parts = {std::make_shared<ConstantSize>(hmax), std::move(asked)};
-  if (!bends.points.empty()) parts.push_back(build_boundary_size_field(bends, context));
-  return combine_size_fields(std::move(parts), size.hmin ? hmin : 0, hmax);
+  const bool has_field = asked && has_field_everywhere(options.size);
+  const BrepSizes wish = geometry_wish(options, look.extent, has_field);
+  GeometrySources found = find_brep_sizes(brep, look, wish, context);
+  if (!found.sources.empty())
+    context.log(
+        LogLevel::info,
+        fmt::format("sizes of the geometry: {:g} to {:g}, {} places, {} of them at hmin; the least at {:g} {:g} {:g}",
+                    found.report.smallest, wish.hmax, found.report.num_sources, found.report.num_at_hmin,
+                    found.report.smallest_at.x, found.report.smallest_at.y, found.report.smallest_at.z));
+  if (found.sources.size() > kManySources) merge_close_sources(found);
+  std::vector<std::shared_ptr<const SizeField>> parts = {std::make_shared<ConstantSize>(wish.hmax), std::move(asked)};
+  if (!found.sources.empty())
+    parts.push_back(build_source_size_field(std::move(found.sources), {.growth = growth_asked(options.size)}, context));
+  return combine_size_fields(std::move(parts), options.size.hmin ? wish.hmin : 0, wish.hmax);
 }
 
-Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report) {
-  const Options usual;
-  return grid_geometry(brep, *geometry_sizes(brep, usual, nullptr, context), usual, context, report);
+BrepGoals geometry_goals(const Options& options, double extent) {
+  const SizeOptions& size = options.size;
+  const AccuracyNumbers usual = accuracy_numbers(size.accuracy);
+  BrepGoals goals;
+  goals.hmin = geometry_wish(options, extent, false).hmin;
+  if (size.deviation) goals.deviation = size.deviation->value;
+  if (size.angle > 0) goals.turn_deg = size.angle;
+  if (!is_automatic(size)) {
+    goals.angle_deg = 0;
+  } else if (!size.deviation && !(size.angle > 0)) {
+    goals.turn_deg = kTurnMargin * 360 / (size.curvature > 0 ? size.curvature : usual.cells_per_turn);
+    if (!(size.curvature > 0)) goals.deviation = usual.deviation_share * extent;
+  }
+  return goals;
 }
 
 Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
                    BrepGridReport& report) {
-  BrepOptions how;
-  if (options.surface.method == "front") how.method = BrepOptions::Method::direct;
-  return surface_mesh(grid_brep(brep, size, how, report, context));
+  return surface_mesh(grid_brep(brep, size, gridding_options(options), report, context));
+}
+
+Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
+                            Context& context, BrepRounds& report) {
+  return surface_mesh(grid_brep_to_goals(input.brep, std::move(size), gridding_options(options),
+                                         geometry_goals(options, input.look.extent), report, context));
+}
+
+Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report) {
+  const Options usual;
+  const BrepLook look = look_at_brep(brep, context);
+  return grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report);
 }
 
 Brep read_brep(const std::string& path) {

@@ -4,28 +4,43 @@
 #include <string>
 
 #include "delfront/brep.hpp"
+#include "delfront/brep_sizes.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
 
 namespace delfront {
 
-/// @brief Sizes of a surface grid of smooth geometry, and how it is gridded.
+/// @brief An input of smooth geometry: which, what it holds, and its first grid.
+struct GeometryInput {
+  std::size_t input = 0;
+  Brep brep;
+  BrepLook look;
+};
+
+/// @brief Sizes of a surface grid of smooth geometry.
 ///
-/// No size exceeds options.size.hmax, else a twentieth of the diagonal; round things get options.size.curvature cells a
-/// turn (or what size.angle and size.deviation say; 18 where none of them is given), by the curvature of the surfaces
-/// and edges themselves; sizes grow by options.size.growth (1.2). The asked field lowers them.
+/// No size exceeds options.size.hmax, else a share of the extent; curvature, close lines and gaps ask for what
+/// options.size says, else for what its accuracy stands for; sizes grow by options.size.growth or that of the accuracy.
+/// The asked field lowers them.
 /// @param options  lengths in model units
 /// @param asked    null: nothing else is asked for
-std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const Options& options,
+std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook& look, const Options& options,
                                                 std::shared_ptr<const SizeField> asked, Context& context);
 
-/// @brief The sizes above with nothing asked for: to look at the geometry, and to ask for sizes on its names.
+/// @brief What the surface grid has to reach, by what is asked for.
+BrepGoals geometry_goals(const Options& options, double extent);
+
+/// @brief A grid of the sizes that are usual: to look at the geometry.
 Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report);
 
 /// @brief grid_brep() by options.surface.method, as a surface mesh with the names of faces, edges and corners.
 Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
                    BrepGridReport& report);
+
+/// @brief The same by grid_brep_to_goals().
+Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
+                            Context& context, BrepRounds& report);
 
 /// @brief Read a file of geometry; faces without a name get the file's stem.
 Brep read_brep(const std::string& path);

@@ -28,13 +28,22 @@ void add_found(const Options& options, const std::string& key, GeometrySources& 
   all.append(std::move(found));
 }
 
+/// Of facets: nothing by itself, and with automatic alone what shape needs.
+bool asks_automatic(const SizeOptions& size) { return size.automatic.value_or(!size.accuracy.empty()); }
+
+AccuracyNumbers usual_numbers(const SizeOptions& size) {
+  AccuracyNumbers numbers = accuracy_numbers(size.accuracy);
+  if (size.accuracy.empty()) numbers.cells_per_turn = AutomaticSizes().cells_per_turn.value();
+  return numbers;
+}
+
 CurvatureSizes curvature_wish(const SizeOptions& size, const Model& model) {
   CurvatureSizes wish;
   if (size.curvature > 0) wish.cells_per_turn = size.curvature;
   if (size.angle > 0) wish.angle_deg = size.angle;
   if (size.deviation) wish.deviation = size.deviation->value;
-  if (size.automatic && !wish.cells_per_turn && !wish.angle_deg && !wish.deviation) {
-    wish.cells_per_turn = AutomaticSizes().cells_per_turn;
+  if (asks_automatic(size) && !wish.cells_per_turn && !wish.angle_deg && !wish.deviation) {
+    wish.cells_per_turn = usual_numbers(size).cells_per_turn;
     wish.hmin = usual_hmin(model);
   }
   if (size.angle_form == "tangent") wish.form = CurvatureSizes::Form::tangent;
@@ -82,8 +91,8 @@ GeometrySources find_surface_sizes(const Options& options, const Model& model,
   const SizeOptions& size = options.size;
   const CurvatureSizes curvature = curvature_wish(size, model);
   const bool asks_curvature = curvature.cells_per_turn || curvature.angle_deg || curvature.deviation;
-  const bool asks_gap = size.gap.cells > 0 || size.automatic;
-  const bool asks_lines = size.proximity.cells > 0 || size.automatic;
+  const bool asks_gap = size.gap.cells > 0 || asks_automatic(size);
+  const bool asks_lines = size.proximity.cells > 0 || asks_automatic(size);
   GeometrySources all;
   if (!asks_curvature && !asks_gap && !asks_lines) return all;
   Model turned = model;  // sides are told by normals
@@ -93,14 +102,13 @@ GeometrySources find_surface_sizes(const Options& options, const Model& model,
     add_found(options, "size.curvature", all, context,
               [&] { return find_curvature_sizes(turned, curvature, context); });
   if (asks_curvature && !turned.triangles.empty()) warn_of_coarse_facets(turned, curvature, context);
-  const AutomaticSizes usual;
+  const AccuracyNumbers usual = usual_numbers(size);
   if (asks_gap)
-    add_found(options, "size.gap", all, context, [&] {
-      return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells.value(), is_kept), context);
-    });
+    add_found(options, "size.gap", all, context,
+              [&] { return find_gap_sizes(turned, gap_wish(options, size.gap, usual.gap_cells, is_kept), context); });
   if (asks_lines)
     add_found(options, "size.proximity", all, context, [&] {
-      return find_line_gap_sizes(turned, gap_wish(options, size.proximity, usual.line_cells.value()), context);
+      return find_line_gap_sizes(turned, gap_wish(options, size.proximity, usual.line_cells), context);
     });
   merge_close_sources(all);
   return all;

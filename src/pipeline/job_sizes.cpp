@@ -206,7 +206,7 @@ FieldPointer keep_on_grid(const Options& options, const SizeField& field, const 
 
 FieldPointer build_job_size_field(const Options& options, const Model& model, const Box& domain, Context& context,
                                   const std::function<bool(Point)>& is_kept) {
-  const double growth = options.size.growth.value_or(kDefaultGrowth);
+  const double growth = growth_asked(options.size);
   const StageTimer timer(context, "sizes");
   std::vector<FieldPointer> parts;
   parts.push_back(build_background_part(options, model, domain, growth, context));

@@ -198,6 +198,44 @@ Json to_json(const SurfaceGridReport& r) {
           {"fallbacks", fallbacks}};
 }
 
+Json to_json(const BrepAccuracy::Worst& w) {
+  return {{"value", number(w.value)}, {"at", to_json(w.at)}, {"num_beyond", w.num_beyond}};
+}
+
+Json to_json(const BrepAccuracy& a) {
+  Json patches = Json::array();
+  for (const BrepAccuracy::Patch& p : a.patches)
+    patches.push_back({{"name", p.name},
+                       {"triangles", p.triangles},
+                       {"min_angle", number(p.min_angle_deg)},
+                       {"largest_deviation", number(p.largest_deviation)}});
+  return {{"triangles", a.triangles},
+          {"points", a.points},
+          {"min_angle", number(a.min_angle_deg)},
+          {"min_angle_away_from_sharp_corners", to_json(a.angle_deg)},
+          {"mean_min_angle", number(a.mean_min_angle_deg)},
+          {"angles", {{"low", 0}, {"high", 60}, {"counts", a.angles}}},
+          {"deviation", to_json(a.deviation)},
+          {"mean_deviation", number(a.mean_deviation)},
+          {"turn", to_json(a.turn_deg)},
+          {"share_of_right_sides", number(a.share_of_right_sides)},
+          {"mean_side", number(a.mean_side)},
+          {"patches", patches}};
+}
+
+Json to_json(const GeometryGrid& g) {
+  Json rounds = Json::array();
+  for (const BrepAccuracy& a : g.rounds.rounds) rounds.push_back(to_json(a));
+  for (std::size_t i = 0; i + 1 < rounds.size(); ++i) rounds[i].erase("patches");
+  return {{"file", g.file}, {"stopped", g.rounds.stopped}, {"rounds", rounds}};
+}
+
+Json geometry_json(const std::vector<GeometryGrid>& grids) {
+  Json result = Json::array();
+  for (const GeometryGrid& grid : grids) result.push_back(to_json(grid));
+  return result;
+}
+
 Json groups_json(const Mesh& mesh, int dim) {
   std::vector<std::size_t> count(mesh.groups.size());
   for (const CellBlock& block : mesh.blocks)
@@ -346,6 +384,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"surface_grid", result.report.surface_grid.triangles || !result.report.surface_grid.fallbacks.empty()
                            ? to_json(result.report.surface_grid)
                            : Json(nullptr)},
+      {"geometry", geometry_json(result.geometry)},
       {"recovery", to_json(result.report.recovery)},
       {"refine", to_json(result.report.refine)},
       {"front", to_json(result.report.front)},

@@ -2,19 +2,13 @@
 #pragma once
 #include <vector>
 
-#include "delfront/brep.hpp"
 #include "delfront/context.hpp"
 #include "delfront/findings.hpp"
 #include "delfront/job.hpp"
 #include "delfront/model.hpp"
+#include "pipeline/geometry_job.hpp"
 
 namespace delfront {
-
-/// @brief An input of smooth geometry: which, and what it holds.
-struct GeometryInput {
-  std::size_t input = 0;
-  Brep brep;
-};
 
 /// @brief A job under way: what goes in, and what its steps have made so far.
 struct Run {

@@ -70,9 +70,10 @@ void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& cont
 
 /// Smooth geometry has a grid to look at until sizes are known.
 void read_smooth(Run& run, const std::string& path) {
-  run.smooth.push_back({run.inputs.size(), read_brep(path)});
-  BrepGridReport report;
-  run.inputs.push_back({grid_to_look_at(run.smooth.back().brep, run.context, report), stem_of(path)});
+  GeometryInput smooth{run.inputs.size(), read_brep(path), {}};
+  smooth.look = look_at_brep(smooth.brep, run.context);
+  run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
+  run.smooth.push_back(std::move(smooth));
 }
 
 void read_inputs(Run& run) {
@@ -153,8 +154,12 @@ void set_boundaries(Run& run, Model& model) {
 
 /// What can be asked of triangles to look at: not their curvature, the surfaces' own counts; nothing on what has no
 /// name yet, such as the far field.
-Options options_for_looks(const Options& options, const Model& model) {
+Options options_for_looks(const Options& options, const Model& model, bool is_all_smooth) {
   Options result = options;
+  if (is_all_smooth) {  // these look at the geometry itself
+    result.size.automatic = false;
+    result.size.gap = result.size.proximity = {};
+  }
   result.size.curvature = result.size.angle = 0;
   result.size.deviation.reset();
   std::vector<std::string> names = model.corner_names;
@@ -167,29 +172,46 @@ Options options_for_looks(const Options& options, const Model& model) {
   return result;
 }
 
+void log_rounds(const GeometryGrid& made, Context& context) {
+  for (std::size_t i = 0; i < made.rounds.rounds.size(); ++i) {
+    const BrepAccuracy& a = made.rounds.rounds[i];
+    context.log(
+        LogLevel::info,
+        fmt::format("{}, round {}: {} triangles, angles from {:.1f} degrees ({} places below the goal), at most "
+                    "{:.3g} off ({} beyond), neighbours turn by up to {:.1f} degrees ({} beyond)",
+                    made.file, i + 1, a.triangles, a.angle_deg.value, a.angle_deg.num_beyond, a.deviation.value,
+                    a.deviation.num_beyond, a.turn_deg.value, a.turn_deg.num_beyond));
+  }
+}
+
 /// Smooth geometry gridded to the sizes asked for; with levels the final sizes are those of the true geometry.
 void grid_smooth(Run& run, Model& model) {
   const Options& options = run.options;
   apply_boundaries(boundaries_of_input(options), model);  // sizes are asked for on their names
+  const bool is_all_smooth = run.smooth.size() == options.input.files.size();
   const std::shared_ptr<const SizeField> asked =
-      build_job_size_field(options_for_looks(options, model), model, model.bounding_box(), run.context);
+      build_job_size_field(options_for_looks(options, model, is_all_smooth), model, model.bounding_box(), run.context);
   std::vector<NamedMesh> fine = run.inputs;
   for (const GeometryInput& smooth : run.smooth) {
-    std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, options, asked, run.context);
-    BrepGridReport report;
-    if (options.refine.levels > 0 && run.geometry.points.empty())
-      fine[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, report);
-    if (options.refine.levels > 0) size = coarse_sizes(std::move(size), options, model.bounding_box(), run.context);
-    run.inputs[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, report);
-    run.context.log(LogLevel::info, fmt::format("{}: {} faces, {} triangles, angles from {:.1f} degrees",
-                                                options.input.files[smooth.input], smooth.brep.faces.size(),
-                                                report.triangles, report.min_angle_deg));
+    std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, smooth.look, options, asked, run.context);
+    GeometryGrid made{options.input.files[smooth.input], {}};
+    if (options.refine.levels == 0) {
+      run.inputs[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+    } else {
+      BrepGridReport coarse;
+      if (run.geometry.points.empty())
+        fine[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+      size = coarse_sizes(std::move(size), options, model.bounding_box(), run.context);
+      run.inputs[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, coarse);
+    }
+    log_rounds(made, run.context);
+    if (!made.rounds.rounds.empty()) run.result.geometry.push_back(std::move(made));
   }
   if (options.refine.levels > 0 && run.geometry.points.empty()) run.geometry = build_model(fine, run.context);
   model = build_model(run.inputs, run.context);
   model.feature_angle = options.input.feature_angle;
-  if (options.surface.method == "mapped" || run.smooth.size() == options.input.files.size())
-    run.options.surface.method = "keep";
+  if (options.surface.method == "mapped" || is_all_smooth) run.options.surface.method = "keep";
+  if (is_all_smooth) run.options.size.automatic = false;  // its grid says it all
 }
 
 Model make_model(Run& run) {
@@ -351,7 +373,8 @@ void work_in_the_plane(Run& run) {
   const Model names = model_of(domain);
   const SizeOptions& size = run.options.size;
   std::function<bool(Point)> is_kept;
-  if (size.gap.cells > 0 || size.automatic) is_kept = kept_part(domain, far_field, run.options, run.context);
+  if (size.gap.cells > 0 || size.automatic.value_or(!size.accuracy.empty()))
+    is_kept = kept_part(domain, far_field, run.options, run.context);
   const std::shared_ptr<const SizeField> sizes =
       build_job_size_field(run.options, names, names.bounding_box(), run.context, is_kept);
   if (run.kind != JobKind::grid) return survey_plane(run, std::move(domain), far_field, sizes);

@@ -57,9 +57,18 @@ void add_geometry_rows(std::vector<OptionRow>& t) {
       120, [](auto& o) -> auto& { return o.size.angle; }));
   t.push_back(text_row("size.angle_form", "", "", "sine: exact for inscribed faces; tangent: larger for large angles",
                        [](auto& o) -> auto& { return o.size.angle_form; }, {"sine", "tangent"}));
-  t.push_back(boolean_row(
-      "size.automatic", "curvature, gaps and lines with their defaults, where they are not given",
-      [](auto& o) -> auto& { return o.size.automatic; }));
+  t.push_back(
+      text_row("size.accuracy", "--accuracy", "coarse|medium|fine",
+               "numbers for curvature, gaps, lines, growth and bounds, where they are not given; smooth geometry "
+               "has medium",
+               [](auto& o) -> auto& { return o.size.accuracy; }, {"coarse", "medium", "fine"}));
+  OptionRow automatic = boolean_row(
+      "size.automatic",
+      "curvature, gaps and lines with their defaults, where they are not given; smooth geometry and accuracy have it "
+      "on",
+      [](auto& o) -> auto& { return o.size.automatic; });
+  automatic.get = [](const Options& o) { return o.size.automatic ? JobValue::of(*o.size.automatic) : JobValue(); };
+  t.push_back(std::move(automatic));
   t.push_back(length_row(
       "size.deviation", "--hausd", "distance of edges from the curved surface that they stand for",
       [](auto& o) -> auto& { return o.size.deviation; }));

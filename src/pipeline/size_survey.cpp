@@ -151,7 +151,7 @@ Estimate estimate_grid(const KeptDomain& domain, const SizeField& size, double g
 }
 
 double growth_of(const SizeOptions& options) {
-  const double growth = options.growth.value_or(kDefaultGrowth);
+  const double growth = growth_asked(options);
   return steeper_growth(options.solution.file.empty() ? growth : std::max(growth, options.solution.hgrad),
                         options.steeper);
 }

@@ -63,7 +63,7 @@ void check_encloses(const PlanarDomain& domain, const std::vector<Point2>& loop,
 
 /// What growth from the body's mean segment makes of the distance to the far field.
 double side_by_growth(const PlanarDomain& domain, const SizeOptions& sizes, double distance) {
-  const double growth = sizes.growth.value_or(kDefaultGrowth), h = mean_segment(domain);
+  const double growth = growth_asked(sizes), h = mean_segment(domain);
   const double grown = std::max(h, (distance * (growth - 1) + h) / growth);
   return sizes.hmax ? std::min(grown, sizes.hmax->value) : grown;
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "delfront/geometry_sizes.hpp"
+
 namespace delfront {
 
 double largest_size(const BoundarySizes& boundary) {
@@ -20,9 +22,11 @@ double steeper_growth(double growth, double times) {
   return 1 / (1 - std::min(times * slope, std::max(slope, kSteepest)));
 }
 
-double growth_of_boundary(const SizeOptions& options) {
-  return steeper_growth(options.growth.value_or(kDefaultGrowth), options.steeper);
+double growth_asked(const SizeOptions& options) {
+  return options.growth.value_or(options.accuracy.empty() ? kDefaultGrowth : accuracy_numbers(options.accuracy).growth);
 }
+
+double growth_of_boundary(const SizeOptions& options) { return steeper_growth(growth_asked(options), options.steeper); }
 
 bool has_field_everywhere(const SizeOptions& options) {
   return !options.expression.delta.empty() || !options.background.file.empty() || !options.solution.file.empty();

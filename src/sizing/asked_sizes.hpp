@@ -11,8 +11,11 @@
 
 namespace delfront {
 
-/// @brief Where no growth is asked for.
+/// @brief Where neither growth nor accuracy is asked for.
 inline constexpr double kDefaultGrowth = 1.2;
+
+/// @return options.growth, else that of options.accuracy
+double growth_asked(const SizeOptions& options);
 
 /// @return the growth that the boundary's sizes keep, with options.steeper: then of a slope of at most 1/2
 double growth_of_boundary(const SizeOptions& options);

@@ -63,6 +63,12 @@ double usual_hmin(const Model& model) {
   return kUsualShare * (model.triangles.empty() ? model.bounding_box() : model.surface_box()).diagonal();
 }
 
+AccuracyNumbers accuracy_numbers(const std::string& word) {
+  if (word == "coarse") return {10, 2e-2, 0.7, 0.5, 1.3, 0.1, 2e-3};
+  if (word == "fine") return {36, 1e-3, 2, 2, 1.15, 0.025, 2.5e-4};
+  return {18, 4e-3, 1, 1, 1.2, 0.05, 1e-3};
+}
+
 GeometrySources find_automatic_sizes(const Model& model, const AutomaticSizes& wish, Context& context) {
   check_bounds("automatic sizes", wish.hmin, std::numeric_limits<double>::infinity());
   GeometrySources found = find_named_sizes(model, wish.named, context);

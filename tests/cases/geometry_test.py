@@ -38,8 +38,14 @@ class SmoothGeometry(case.Case):
         self.assertEqual([group["name"] for group in report["boundaries"]], ["sphere"])
         self.assertAlmostEqual(report["quality"]["volume"] / (4 * math.pi / 3), 1, delta=0.02)
         self.expect(0, "check", "ball.vtu")
-        # 18 cells a turn: sides of about 2 pi / 18
-        self.assertAlmostEqual(report["surface"]["mean_edge"], 2 * 1.732 / 20, delta=0.03)
+        # no side longer than a twentieth of the extent
+        self.assertAlmostEqual(report["surface"]["mean_edge"], 2 / 20, delta=0.01)
+        grid = report["geometry"][0]
+        self.assertEqual((grid["file"], grid["stopped"]), ("ball.geom.toml", ""))
+        last = grid["rounds"][-1]
+        self.assertEqual(sum(last["angles"]["counts"]), last["triangles"])
+        self.assertEqual([patch["name"] for patch in last["patches"]], ["sphere"])
+        self.assertLess(last["deviation"]["value"], 0.004 * 2)
 
     def test_info_lists_what_there_is(self):
         self.write("room.geom.toml", SHELL)
@@ -112,6 +118,42 @@ report = "out.json"
         coarse = self.grid("ball.geom.toml", "--hmax", "1", "--curvature", "12")["surface"]["mean_edge"]
         fine = self.grid("ball.geom.toml", "--hmax", "1", "--curvature", "36")["surface"]["mean_edge"]
         self.assertAlmostEqual(coarse / fine, 3, delta=0.3)
+
+    def test_accuracy_is_one_word_for_all(self):
+        self.write("ring.geom.toml", '[[shape]]\ntype = "torus"\nradius = 2\ntube = 0.4\n')
+        grids = [self.grid("ring.geom.toml", "--accuracy", word, "--stop-after", "surface")["geometry"][0]["rounds"][-1]
+                 for word in ("coarse", "medium", "fine")]
+        for coarse, fine in zip(grids, grids[1:]):
+            self.assertGreater(fine["triangles"], 2 * coarse["triangles"])
+            self.assertLess(fine["deviation"]["value"], 0.6 * coarse["deviation"]["value"])
+        self.expect(2, "mesh", "ring.geom.toml", "-o", "a.vtu", "--accuracy", "finest", says="medium")
+
+    def test_plates_get_cells_as_thin_as_they_are_unless_switched_off(self):
+        self.write("plate.geom.toml", '[[shape]]\ntype = "box"\nmin = [0, 0, 0]\nmax = [1, 1, 0.05]\n')
+        for keys, most in (((), 0.08), (("--set", "size.automatic=false"), 0.2)):
+            report = self.grid("plate.geom.toml", "--stop-after", "surface", *keys)
+            self.assertLess(report["surface"]["mean_edge"], most)
+        self.assertGreater(report["surface"]["mean_edge"], 0.05)
+
+    def test_deviation_is_kept_to(self):
+        self.write("ball.geom.toml", BALL)
+        report = self.grid("ball.geom.toml", "--hausd", "0.01", "--hmax", "1", "--stop-after", "surface")
+        self.assertLessEqual(report["geometry"][0]["rounds"][-1]["deviation"]["value"], 0.01)
+
+    def test_examples(self):
+        for folder in ("swept_wing", "onera_m6", "smooth_shapes"):
+            sys.path.insert(0, str(case.ROOT / "examples" / folder))
+        import make_m6
+        import make_shapes
+        texts = {"m6": make_m6.wing(), **{name: shape() for name, shape in make_shapes.SHAPES.items() if name != "blade"}}
+        for name, text in texts.items():
+            with self.subTest(name):
+                self.write(f"{name}.geom.toml", "\n".join(text))
+                report = self.grid(f"{name}.geom.toml", "--stop-after", "surface")
+                self.assertEqual(report["surface"]["is_closed"], name != "patch")
+                last = report["geometry"][0]["rounds"][-1]
+                self.assertGreater(last["min_angle_away_from_sharp_corners"]["value"], 20)
+                self.assertEqual(report["geometry"][0]["stopped"], "")
 
     def test_bad_files_are_refused_with_their_line(self):
         for text, says in ((BALL.replace("radius", "raduis"), "bad.geom.toml:3"), ("[[shape]\n", "not valid TOML"),

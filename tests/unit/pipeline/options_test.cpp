@@ -280,6 +280,7 @@ Options unusual_options() {
       {"size.angle", "12"},
       {"size.deviation", "0.01%"},
       {"size.angle_form", "tangent"},
+      {"size.accuracy", "fine"},
       {"size.automatic", "true"},
       {"size.gap", "3"},
       {"size.gap.hmin", "1e-4"},
