@@ -3,9 +3,13 @@
 // turns by more than a side may, so that its points and those along borders see every bend.
 #include "pipeline/geometry_job.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
@@ -115,6 +119,27 @@ BoundarySizes find_bends(const Brep& brep, const std::vector<VertexEntity>& poin
   return bends.take();
 }
 
+/// The first of each kind, and how many more there are.
+void tell_notes(const std::vector<CadNote>& notes, const std::string& path, LogLevel level, Context& context) {
+  std::map<std::string, std::size_t> count;
+  for (const CadNote& note : notes) ++count[note.kind];
+  for (const CadNote& note : notes) {
+    const std::size_t all = std::exchange(count[note.kind], 0);
+    if (all == 0) continue;
+    context.log(level, fmt::format("{}: {}{}", path, note.message,
+                                   all > 1 ? fmt::format(" (and {} more of this kind)", all - 1) : ""));
+  }
+}
+
+void tell(const CadReport& cad, const std::string& path, Context& context) {
+  tell_notes(cad.repairs, path, LogLevel::info, context);
+  tell_notes(cad.suspicious, path, LogLevel::warning, context);
+  if (cad.free_edges > 0)
+    context.warn(fmt::format("{}: {} edges bound one face only: the surface is open there, and bounds no volume unless "
+                             "something else closes it (the surface alone: --stop-after surface)",
+                             path, cad.free_edges));
+}
+
 }  // namespace
 
 std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const Options& options,
@@ -151,8 +176,16 @@ Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& optio
   return surface_mesh(grid_brep(brep, size, how, report, context));
 }
 
-Brep read_brep(const std::string& path) {
-  Brep brep = build_brep(read_geometry(path), path);
+bool is_smooth_file(const std::string& path) { return is_geometry_file(path) || is_cad_file(path); }
+
+Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
+  Brep brep;
+  if (is_cad_file(path)) {
+    brep = read_cad(path, {}, cad, context);
+    tell(cad, path, context);
+  } else {
+    brep = build_brep(read_geometry(path), path);
+  }
   for (BrepFace& face : brep.faces)
     if (face.name.empty()) face.name = geometry_stem(path);
   return brep;
@@ -160,6 +193,7 @@ Brep read_brep(const std::string& path) {
 
 std::string geometry_stem(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
+  if (is_cad_file(path)) return std::filesystem::path(path).stem().string();
   return name.substr(0, name.size() - std::string(kGeometrySuffix).size());
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "delfront/brep.hpp"
+#include "delfront/cad.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
@@ -27,8 +28,13 @@ Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report)
 Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
                    BrepGridReport& report);
 
-/// @brief Read a file of geometry; faces without a name get the file's stem.
-Brep read_brep(const std::string& path);
+/// @brief Whether a file holds smooth geometry: as text (.geom.toml) or from CAD (.step, .iges, …).
+bool is_smooth_file(const std::string& path);
+
+/// @brief Read a file of geometry; faces without a name get the file's stem. What was mended and what is suspicious is
+/// told to the context's log.
+/// @param cad  filled where it is a CAD file
+Brep read_brep(const std::string& path, Context& context, CadReport& cad);
 
 /// @return the name of a file without folder and suffix
 std::string geometry_stem(const std::string& path);
