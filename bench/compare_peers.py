@@ -23,14 +23,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from compare import machine, peers, results, tables  # noqa: E402
 from compare.running import Limits, new_stamp, run_interleaved  # noqa: E402
-
-
-def numbers(text: str) -> list[int]:
-    return [int(float(word)) for word in text.split(",") if word]
-
-
-def words(text: str) -> list[str]:
-    return [word for word in text.split(",") if word]
+from compare.script import numbers, words  # noqa: E402
 
 
 def parse() -> argparse.Namespace:

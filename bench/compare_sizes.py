@@ -19,10 +19,10 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from compare import machine, peers, tables  # noqa: E402
+from compare import machine, peers, script  # noqa: E402
 
 PAGE = peers.ROOT / "docs" / "sizes" / "sources.md"
-BEGIN, END = "<!-- begin: made by bench/compare_sizes.py -->", "<!-- end: made by bench/compare_sizes.py -->"
+MAKER = "compare_sizes.py"
 NUM_PLACES = 1_000_000
 GMSH_WORK = 400_000  # sources times places
 
@@ -152,8 +152,8 @@ def main() -> int:
         print(why, file=sys.stderr)
         return 1
     if options.no_gmsh:
-        text = PAGE.read_text(encoding="utf-8")
-        gmsh = text[text.index("| point sources |") : text.index(END)].rstrip()
+        text = script.between(PAGE, MAKER)
+        gmsh = text[text.index("| point sources |") :]
     else:
         with tempfile.TemporaryDirectory(prefix="delfront_sizes_") as folder:
             gmsh = compare_with_gmsh(bench, options, Path(folder))
@@ -165,10 +165,7 @@ def main() -> int:
         f"{compare_body(bench, options)}\n\n"
         f"Point sources with linear laws, beside Gmsh's `Min` of `Distance` and `Threshold`, time of one value:\n\n{gmsh}\n"
     )
-    print(text)
-    if options.write_docs:
-        tables.replace_between(PAGE, BEGIN, END, text)
-    return 0
+    return script.publish(text, PAGE, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

@@ -12,10 +12,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-from compare import machine, tables
+from compare import machine, script, tables
 
 ROOT = Path(__file__).resolve().parent.parent
-BEGIN, END = "<!-- begin: made by bench/front_search.py -->", "<!-- end: made by bench/front_search.py -->"
+PAGE = ROOT / "docs" / "front.md"
+MAKER = "front_search.py"
 
 
 def rows_of(program):
@@ -36,10 +37,7 @@ def main():
     head = ["faces of the front", "found a step", "heap, octree of points: ns a step", "rounds, octree of boxes: ns"]
     text = (f"{machine.describe()}; one core, medians of {options.repeat}, by `bench/front_search.py --write-docs`.\n\n"
             + "\n".join(tables.table([*head, "gain"], lines)))
-    print(text)
-    if options.write_docs:
-        tables.replace_between(ROOT / "docs" / "front.md", BEGIN, END, text)
-    return 0
+    return script.publish(text, PAGE, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

@@ -22,10 +22,10 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from compare import machine, peers, tables  # noqa: E402
+from compare import machine, peers, script  # noqa: E402
 
 PAGE = peers.ROOT / "docs" / "sizes" / "sources.md"
-BEGIN, END = "<!-- begin: made by bench/gridding_with_sources.py -->", "<!-- end: made by bench/gridding_with_sources.py -->"
+MAKER = "gridding_with_sources.py"
 WALL = 24  # squares along a side of the cube
 WAYS = {"sources": [], "kept on a grid": ["--set", "size.adaptive.cells=8"]}
 
@@ -125,10 +125,7 @@ def main() -> int:
         "`bench/gridding_with_sources.py --write-docs`. Ratio: gridding of a million with the sources themselves against "
         "this row; whole: all stages, with what builds the tree or the grid of sizes.\n\n" + "\n".join(lines) + "\n"
     )
-    print(text)
-    if options.write_docs:
-        tables.replace_between(PAGE, BEGIN, END, text)
-    return 0
+    return script.publish(text, PAGE, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

@@ -23,10 +23,10 @@ import meshio
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from compare import machine, peers, running, shapes, tables  # noqa: E402
+from compare import machine, peers, running, script, shapes, tables  # noqa: E402
 
 PAGE = peers.ROOT / "docs" / "refine.md"
-BEGIN, END = "<!-- begin: made by bench/levels.py -->", "<!-- end: made by bench/levels.py -->"
+MAKER = "levels.py"
 LEFT_OUT = ("read", "measure", "write")
 PAIRS = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]
 
@@ -146,10 +146,7 @@ def main() -> int:
         f"`bench/levels.py --tets {options.tets:g} --levels {options.levels} --repeat {options.repeat} "
         f"--threads {options.threads}`. Load average {machine.load():.1f}.\n\n" + "\n".join(tables.table(head, lines))
     )
-    print(text)
-    if options.write_docs:
-        tables.replace_between(PAGE, BEGIN, END, text)
-    return 0
+    return script.publish(text, PAGE, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

@@ -25,10 +25,10 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from compare import grids, machine, peers, tables  # noqa: E402
+from compare import grids, machine, peers, script  # noqa: E402
 
 PAGE = peers.ROOT / "docs" / "front-plane.md"
-BEGIN, END = "<!-- begin: made by bench/planar_front.py -->", "<!-- end: made by bench/planar_front.py -->"
+MAKER = "planar_front.py"
 METHODS = ("front", "front-delaunay", "delaunay")
 SECTIONS = ("naca0012", "rae2822", "s1223")
 ANGLE = 30  # asked of all that can be asked
@@ -191,10 +191,7 @@ def main() -> int:
     text += "| section | method | triangles | sweeps | cavities | closed by Delaunay | mean quality | least angle |\n"
     text += "| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
     text += "\n".join(collect_sections(options, program)) + "\n"
-    print(text)
-    if options.write_docs:
-        tables.replace_between(PAGE, BEGIN, END, text)
-    return 0
+    return script.publish(text, PAGE, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

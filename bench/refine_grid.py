@@ -23,10 +23,10 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from compare import machine, peers, running, shapes, tables  # noqa: E402
+from compare import machine, peers, running, script, shapes, tables  # noqa: E402
 
 PAGE = peers.ROOT / "docs" / "refine.md"
-BEGIN, END = "<!-- begin: made by bench/refine_grid.py -->", "<!-- end: made by bench/refine_grid.py -->"
+MAKER = "refine_grid.py"
 TOPOLOGY = {"refine: points", "refine: cells"}
 
 
@@ -170,10 +170,7 @@ def main() -> int:
         f"Load average {machine.load():.1f}. Commands: `delfront refine coarse.vtu -o fine.vtu [--geometry sphere.off] -j N`, "
         f"`gmsh coarse.msh -refine -o fine.msh -format msh41`.\n\n" + "\n".join(tables.table(head, rows))
     )
-    print(text)
-    if options.write_docs:
-        tables.replace_between(PAGE, BEGIN, END, text)
-    return 0
+    return script.publish(text, PAGE, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

@@ -20,14 +20,14 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from compare import fill, machine, peers, shapes, tables  # noqa: E402
+from compare import fill, machine, peers, script, shapes, tables  # noqa: E402
 from compare.running import new_stamp  # noqa: E402
 
 FLOOR = {"walk_steps": 5.6, "insphere_tests": 48, "tets_created": 28, "tets_deleted": 21}
 WORDS = {"walk_steps": "walk steps", "insphere_tests": "in-sphere tests", "tets_created": "tets made"}
 WORDS["tets_deleted"] = "tets deleted"
 FUNCTIONS = 25
-MARKS = ("<!-- begin: made by bench/stage_breakdown.py -->", "<!-- end: made by bench/stage_breakdown.py -->")
+MAKER = "stage_breakdown.py"
 
 
 def mesh_command(program: str, threads: int) -> list[str]:
@@ -170,10 +170,7 @@ def main() -> int:
         floor_table(kernel, int(options.points), threads[0]) if kernel else [f"delaunay_bench: {kernel_missing}.", ""]
     )
     text = "\n".join(lines)
-    print(text)
-    if options.write_docs:
-        tables.replace_between(options.docs, *MARKS, text)
-    return 0
+    return script.publish(text, options.docs, MAKER, options.write_docs)
 
 
 if __name__ == "__main__":

@@ -5,15 +5,11 @@ import statistics
 from pathlib import Path
 
 from . import fill, planar, points
+from .script import replace_between
 
 MODULES = {"points": points, "fill": fill, "planar": planar}
 VOLUME_TOLERANCE = 1e-8  # relative: sums of millions of rounded terms
 OURS = "delfront"
-
-
-def marks(workload: str) -> tuple[str, str]:
-    name = f"made by bench/compare_peers.py: {workload}"
-    return f"<!-- begin: {name} -->", f"<!-- end: {name} -->"
 
 
 def median(row: dict, key: str) -> float | None:
@@ -246,19 +242,7 @@ def about(case: dict) -> str:
     return facts["about"] + (f": {', '.join(counts)}." if counts else ".")
 
 
-def replace_between(path: Path, begin: str, end: str, text: str) -> None:
-    """Put the text between the markers of the page, or with them at its end; the rest stays."""
-    page = path.read_text() if path.exists() else "# Performance\n"
-    if begin in page and end in page:
-        before, rest = page.split(begin, 1)
-        page = before + begin + "\n" + text.rstrip() + "\n" + end + rest.split(end, 1)[1]
-    else:
-        page = page.rstrip() + f"\n\n{begin}\n{text.rstrip()}\n{end}\n"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(page)
-
-
 def write_docs(path: Path, results: dict) -> None:
     for workload in MODULES:
         if any(key.startswith(workload + "/") for key in results["cases"]):
-            replace_between(path, *marks(workload), section(workload, results))
+            replace_between(path, f"compare_peers.py: {workload}", section(workload, results))

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "surface/linked_triangles.hpp"
+
 namespace delfront {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kLeastGain = 1e-3;   ///< of a squared sine
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
 constexpr double kAgree = 0.3;        ///< least cosine between triangles and the surface at their corners
 constexpr double kMostLonger = 1.3;   ///< sides that a collapse makes, of the longest there
-constexpr std::uint32_t kNone = 0xffffffffu;
+constexpr std::uint32_t kNone = LinkedTriangles::kNone;
 
 double squared_sine(Point a, Point b, Point c) {
   const Point u = b - a, v = c - b, w = a - c;
@@ -24,9 +26,6 @@ double squared_sine(Point a, Point b, Point c) {
   return product > 0 ? squared_length(cross(u, v)) / product : 0;
 }
 
-std::uint32_t next(std::uint32_t side) { return side % 3 == 2 ? side - 2 : side + 1; }
-std::uint32_t before(std::uint32_t side) { return side % 3 == 0 ? side + 2 : side - 1; }
-
 /// The triangles round small angles, linked; those at their rim are only looked at.
 class SmallAngles {
  public:
@@ -35,14 +34,14 @@ class SmallAngles {
 
   void run() {
     for (int round = 0; round < kRounds && select(); ++round) {
-      link();
+      links_.link(std::move(triangles_), grid_.points.size());
       std::size_t done = 0;
       for (int sweep = 0; sweep < kSweeps; ++sweep) {
         const std::size_t count = work();
         done += count;
         if (count == 0) break;
       }
-      for (std::size_t t = 0; t < triangles_.size(); ++t) grid_.triangles[given_[t]] = triangles_[t];
+      for (std::uint32_t t = 0; t < given_.size(); ++t) grid_.triangles[given_[t]] = links_.triangle(t);
       if (is_collapsed_) drop_collapsed();
       if (done == 0) return;
     }
@@ -50,7 +49,6 @@ class SmallAngles {
 
  private:
   Point at(std::uint32_t p) const { return grid_.points[p].at; }
-  std::uint32_t point(std::uint32_t side) const { return triangles_[side / 3][side % 3]; }
   double sine(const std::array<std::uint32_t, 3>& t) const { return squared_sine(at(t[0]), at(t[1]), at(t[2])); }
 
   void drop_collapsed() {
@@ -99,24 +97,7 @@ class SmallAngles {
     return true;
   }
 
-  void link() {
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> sides;
-    for (std::uint32_t s = 0; s < 3 * triangles_.size(); ++s) {
-      const std::uint32_t a = point(s), b = point(next(s)), low = std::min(a, b), high = std::max(a, b);
-      sides.push_back({std::uint64_t(low) << 32 | high, s});
-    }
-    std::sort(sides.begin(), sides.end());
-    other_.assign(3 * triangles_.size(), kNone);
-    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-      if (sides[i].first != sides[i + 1].first) continue;
-      other_[sides[i].second] = sides[i + 1].second;
-      other_[sides[i + 1].second] = sides[i].second;
-    }
-    side_at_.assign(grid_.points.size(), kNone);
-    for (std::uint32_t s = 0; s < 3 * triangles_.size(); ++s) side_at_[point(s)] = s;
-  }
-
-  bool is_small(std::uint32_t t) const { return triangles_[t][0] != kNone && sine(triangles_[t]) <= kGoal; }
+  bool is_small(std::uint32_t t) const { return !links_.is_gone(t) && sine(links_.triangle(t)) <= kGoal; }
 
   /// Whether a triangle faces as the surface does at its corners, but for poles.
   bool agrees(const std::array<std::uint32_t, 3>& t) const {
@@ -130,53 +111,34 @@ class SmallAngles {
 
   std::size_t work() {
     std::size_t done = 0;
-    const auto n = static_cast<std::uint32_t>(triangles_.size());
+    const auto n = static_cast<std::uint32_t>(links_.num_triangles());
     for (std::uint32_t t = 0; t < n; ++t)
       for (std::uint32_t k = 0; k < 3 && is_small(t); ++k) done += flip(3 * t + k);
     for (std::uint32_t t = 0; t < n; ++t)
-      for (std::size_t k = 0; k < 3 && is_small(t); ++k) done += lift(triangles_[t][k]);
+      for (std::size_t k = 0; k < 3 && is_small(t); ++k) done += lift(links_.triangle(t)[k]);
     for (std::uint32_t t = 0; t < n; ++t)
       for (std::uint32_t k = 0; k < 6 && is_small(t); ++k) {
-        const std::uint32_t a = triangles_[t][k % 3], b = triangles_[t][(k + 1) % 3];
+        const std::uint32_t a = links_.triangle(t)[k % 3], b = links_.triangle(t)[(k + 1) % 3];
         done += k < 3 ? collapse(a, b) : collapse(b, a);
       }
     return done;
   }
 
-  /// All points that sides join to q, whose triangles are all there.
-  void find_neighbours(std::uint32_t q) {
-    fan_.clear();
-    std::uint32_t begin = side_at_[q];
-    for (std::uint32_t s = begin; other_[s] != kNone;) {
-      s = next(other_[s]);
-      begin = s;
-      if (s == side_at_[q]) break;
-    }
-    std::uint32_t s = begin;
-    do {
-      fan_.push_back(point(next(s)));
-      if (other_[before(s)] == kNone) {
-        fan_.push_back(point(before(s)));
-        return;
-      }
-      s = other_[before(s)];
-    } while (s != begin);
-  }
-
   /// Point p goes to its neighbour q where that lifts the smallest angle round p, and no side gets much longer.
   bool collapse(std::uint32_t p, std::uint32_t q) {
-    if (grid_.points[p].vertex != kNoVertex || mark_[p] > 2 || mark_[q] > 2 || !ring(p) || ring_.size() < 4)
+    if (grid_.points[p].vertex != kNoVertex || mark_[p] > 2 || mark_[q] > 2 || !links_.ring(p, ring_) ||
+        ring_.points.size() < 4)
       return false;
-    const std::size_t n = ring_.size();
-    const auto found = std::find(ring_.begin(), ring_.end(), q);
-    if (found == ring_.end()) return false;
-    const auto i = std::size_t(found - ring_.begin());
-    find_neighbours(q);
+    const std::size_t n = ring_.points.size();
+    const auto found = std::find(ring_.points.begin(), ring_.points.end(), q);
+    if (found == ring_.points.end()) return false;
+    const auto i = std::size_t(found - ring_.points.begin());
+    links_.fan(q, fan_);
     double before_worst = 1, after_worst = 1, longest = 0;
-    for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, distance(at(p), at(ring_[k])));
+    for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, distance(at(p), at(ring_.points[k])));
     const Point normal = surface_.normal(grid_.points[p].uv);
     for (std::size_t k = 0; k < n; ++k) {
-      const std::uint32_t a = ring_[k], b = ring_[(k + 1) % n];
+      const std::uint32_t a = ring_.points[k], b = ring_.points[(k + 1) % n];
       before_worst = std::min(before_worst, sine({p, a, b}));
       if (k == i || (k + 1) % n == i) continue;
       const Point area = cross(at(a) - at(q), at(b) - at(q));
@@ -188,42 +150,12 @@ class SmallAngles {
     for (std::size_t k = 0; k < n; ++k) {
       if (k == i) continue;
       const bool is_beside = (k + 1) % n == i || (i + 1) % n == k;
-      if (!is_beside && std::find(fan_.begin(), fan_.end(), ring_[k]) != fan_.end()) return false;
-      if (distance(at(q), at(ring_[k])) > kMostLonger * longest) return false;
+      if (!is_beside && std::find(fan_.points.begin(), fan_.points.end(), ring_.points[k]) != fan_.points.end())
+        return false;
+      if (distance(at(q), at(ring_.points[k])) > kMostLonger * longest) return false;
     }
-    remove(p, q);
-    return true;
-  }
-
-  /// The two triangles at side p q go, the others round p get q.
-  void remove(std::uint32_t p, std::uint32_t q) {
-    is_collapsed_ = true;
-    std::vector<std::uint32_t> sides;  // those that begin at p
-    std::uint32_t s = side_at_[p];
-    do {
-      sides.push_back(s);
-      s = other_[before(s)];
-    } while (s != side_at_[p]);
-    for (const std::uint32_t side : sides) {
-      const std::uint32_t t = side / 3;
-      if (point(next(side)) != q && point(before(side)) != q) continue;
-      const bool q_follows = point(next(side)) == q;
-      // p q x: what lies over q x and over x p meet; p x q: over x q and over p x
-      const std::uint32_t far = other_[next(side)], near = q_follows ? other_[before(side)] : other_[side];
-      if (far != kNone) other_[far] = near;
-      if (near != kNone) other_[near] = far;
-      for (const std::uint32_t link : {far, near})
-        if (link != kNone) touched_.push_back(link / 3);
-      triangles_[t] = {kNone, kNone, kNone};
-    }
-    for (const std::uint32_t side : sides)
-      for (std::uint32_t& corner : triangles_[side / 3])
-        if (corner == p) corner = q;
-    for (const std::uint32_t side : sides) touched_.push_back(side / 3);
-    for (const std::uint32_t t : touched_)
-      for (std::uint32_t k = 0; k < 3 && triangles_[t][0] != kNone; ++k) side_at_[triangles_[t][k]] = 3 * t + k;
-    touched_.clear();
-    side_at_[p] = kNone;
+    links_.collapse(p, q);
+    return is_collapsed_ = true;
   }
 
   bool is_kept(std::uint32_t a, std::uint32_t b) const {
@@ -233,25 +165,12 @@ class SmallAngles {
     return std::binary_search(kept_.begin(), kept_.end(), std::uint64_t(low) << 32 | high);
   }
 
-  /// Points round an inner point, anticlockwise; false at the rim.
-  bool ring(std::uint32_t p) {
-    ring_.clear();
-    const std::uint32_t begin = side_at_[p];
-    if (begin == kNone) return false;
-    std::uint32_t s = begin;
-    do {
-      ring_.push_back(point(next(s)));
-      s = other_[before(s)];
-      if (s == kNone || ring_.size() > 60) return false;
-    } while (s != begin);
-    return true;
-  }
-
   /// Side a b of triangles a b c and b a d becomes c d where that lifts the smallest angle.
   bool flip(std::uint32_t side) {
-    const std::uint32_t other = other_[side];
+    const std::uint32_t other = links_.other(side);
     if (other == kNone) return false;
-    const std::uint32_t a = point(side), b = point(next(side)), c = point(before(side)), d = point(before(other));
+    const std::uint32_t a = links_.point(side), b = links_.point(links_.next(side));
+    const std::uint32_t c = links_.point(links_.before(side)), d = links_.point(links_.before(other));
     if (c == d || is_kept(a, b)) return false;
     if (grid_.points[c].vertex != kNoVertex && grid_.points[d].vertex != kNoVertex) return false;
     const double now = std::min(sine({a, b, c}), sine({b, a, d})), then = std::min(sine({a, d, c}), sine({d, b, c}));
@@ -263,36 +182,21 @@ class SmallAngles {
       return false;
     if (!agrees({a, d, c}) || !agrees({d, b, c})) return false;
     const std::uint32_t free = grid_.points[c].vertex == kNoVertex ? c : d;
-    if (!ring(free) || std::find(ring_.begin(), ring_.end(), free == c ? d : c) != ring_.end()) return false;
-    const std::uint32_t t = side / 3, w = other / 3;
-    const std::uint32_t bc = other_[next(side)], ca = other_[before(side)], ad = other_[next(other)],
-                        db = other_[before(other)];
-    triangles_[t] = {a, d, c};
-    triangles_[w] = {d, b, c};
-    bond(3 * t, ad);
-    bond(3 * t + 1, 3 * w + 2);
-    bond(3 * t + 2, ca);
-    bond(3 * w, db);
-    bond(3 * w + 1, bc);
-    side_at_[a] = 3 * t;
-    side_at_[d] = 3 * t + 1;
-    side_at_[c] = 3 * t + 2;
-    side_at_[b] = 3 * w + 1;
+    if (!links_.ring(free, ring_)) return false;
+    const std::vector<std::uint32_t>& round = ring_.points;
+    if (std::find(round.begin(), round.end(), free == c ? d : c) != round.end()) return false;
+    links_.flip(side);
     return true;
-  }
-
-  void bond(std::uint32_t side, std::uint32_t other) {
-    other_[side] = other;
-    if (other != kNone) other_[other] = side;
   }
 
   double worst_of_ring(Point place, Point normal) const {
     double worst = 1;  // with normals of the ring's points: those at poles are nothing
-    for (std::size_t i = 0; i < ring_.size(); ++i) {
-      const Point a = at(ring_[i]), b = at(ring_[(i + 1) % ring_.size()]), n = cross(a - place, b - place);
+    for (std::size_t i = 0; i < ring_.points.size(); ++i) {
+      const Point a = at(ring_.points[i]), b = at(ring_.points[(i + 1) % ring_.points.size()]),
+                  n = cross(a - place, b - place);
       const double least = kAgree * length(n);
       if (!(dot(n, normal) > least)) return 0;
-      for (const Point there : {ring_normal_[i], ring_normal_[(i + 1) % ring_.size()]})
+      for (const Point there : {ring_normal_[i], ring_normal_[(i + 1) % ring_.points.size()]})
         if (!(dot(n, there) > least) && there != Point{}) return 0;
       worst = std::min(worst, squared_sine(place, a, b));
     }
@@ -302,12 +206,12 @@ class SmallAngles {
   /// The point goes where the worst angle round it is largest, as far as steps along the surface find that.
   bool lift(std::uint32_t p) {
     FacePoint& moved = grid_.points[p];
-    if (moved.vertex != kNoVertex || !ring(p)) return false;
+    if (moved.vertex != kNoVertex || !links_.ring(p, ring_)) return false;
     double reach = 0;
-    for (const std::uint32_t q : ring_) reach += 0.25 * distance(at(q), moved.at) / double(ring_.size());
+    for (const std::uint32_t q : ring_.points) reach += 0.25 * distance(at(q), moved.at) / double(ring_.points.size());
     Point normal = surface_.normal(moved.uv);
     ring_normal_.clear();
-    for (const std::uint32_t q : ring_) {
+    for (const std::uint32_t q : ring_.points) {
       const FacePoint& point = grid_.points[q];
       ring_normal_.push_back(point.is_pole ? Point{} : surface_.normal(point.uv));
     }
@@ -315,7 +219,8 @@ class SmallAngles {
     bool is_better = false;
     for (int k = 0; k < kMoves; ++k) {
       bool is_moved = false;
-      const Point u = at(ring_[0]) - moved.at, x = u - dot(u, normal) * normal, e = x / length(x), f = cross(normal, e);
+      const Point u = at(ring_.points[0]) - moved.at, x = u - dot(u, normal) * normal, e = x / length(x),
+                  f = cross(normal, e);
       for (int d = 0; d < kDirections && !is_moved; ++d) {
         const double angle = d * 2 * std::numbers::pi / kDirections;
         const Point to = moved.at + reach * (std::cos(angle) * e + std::sin(angle) * f);
@@ -338,12 +243,11 @@ class SmallAngles {
   const std::vector<std::uint64_t>& kept_;
   FaceGrid& grid_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::size_t> given_;      ///< by triangle: the grid's
-  std::vector<std::uint32_t> other_;    ///< by side 3 t + k (from corner k to k + 1): the same side of its neighbour
-  std::vector<std::uint32_t> side_at_;  ///< by point: a side that begins there
-  std::vector<std::uint8_t> mark_;      ///< by point: 1 to 3, outwards from small angles; 3 is the rim
+  std::vector<std::size_t> given_;  ///< by triangle: the grid's
+  LinkedTriangles links_;
+  std::vector<std::uint8_t> mark_;  ///< by point: 1 to 3, outwards from small angles; 3 is the rim
   bool is_collapsed_ = false;
-  std::vector<std::uint32_t> ring_, fan_, touched_;
+  TriangleRing ring_, fan_;
   std::vector<Point> ring_normal_;
 };
 

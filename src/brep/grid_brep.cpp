@@ -12,6 +12,7 @@
 #include "brep/edge_points.hpp"
 #include "brep/face_mesh.hpp"
 #include "delfront/errors.hpp"
+#include "geometry/angles.hpp"
 #include "geometry/surface_findings.hpp"
 #include "surface/working_size.hpp"
 
@@ -23,7 +24,6 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
-constexpr double kDegree = std::numbers::pi / 180;
 
 class BrepGridder {
  public:
@@ -173,21 +173,18 @@ class BrepGridder {
       r.largest_distance = std::max(r.largest_distance, grid.largest_distance);
       r.largest_normal_angle_deg = std::max(r.largest_normal_angle_deg, grid.largest_angle / kDegree);
     }
-    r.min_angle_deg = 180;
+    SmallestAngles angles;
     for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-      double least = 180;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto& v = m.triangles[TriangleId(t)];
-        const Point a = m.points[v[k]], u = m.points[v[(k + 1) % 3]] - a, w = m.points[v[(k + 2) % 3]] - a;
-        least = std::min(least, std::atan2(length(cross(u, w)), dot(u, w)) / kDegree);
-      }
+      const auto& [a, b, c] = m.triangles[TriangleId(t)];
+      const double least = smallest_angle_deg(m.points[a], m.points[b], m.points[c]);
+      angles.add(least);
       BrepFaceReport& face = r.faces[m.input_face[TriangleId(t)]];
       ++face.triangles;
       face.min_angle_deg = std::min(face.min_angle_deg, least);
-      r.min_angle_deg = std::min(r.min_angle_deg, least);
-      r.mean_min_angle_deg += least / double(m.triangles.size());
-      r.below_25_deg += least < 25;
     }
+    r.min_angle_deg = angles.min_deg;
+    r.mean_min_angle_deg = angles.mean_deg();
+    r.below_25_deg = angles.below_25_deg;
   }
 
   const Brep& brep_;

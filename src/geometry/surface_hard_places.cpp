@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.hpp"
 #include "geometry/surface_findings.hpp"
 #include "spatial/bvh.hpp"
 
@@ -17,18 +18,6 @@ constexpr double kSmallDihedralDeg = 20;
 constexpr double kThinGap = 0.5;  ///< of the facet's mean edge
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
-
-double angle_between(Point a, Point b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
-
-double smallest_angle(const Surface& surface, std::size_t t) {
-  double smallest = std::numbers::pi;
-  for (int k = 0; k < 3; ++k) {
-    const Point p = surface.corner(t, k);
-    smallest =
-        std::min(smallest, angle_between(surface.corner(t, (k + 1) % 3) - p, surface.corner(t, (k + 2) % 3) - p));
-  }
-  return smallest;
-}
 
 struct Spot {
   double measure;  ///< the smaller the worse
@@ -57,14 +46,15 @@ void append_spots(const Surface& surface, std::vector<Spot>& spots, Finding find
 
 void find_slivers(const Surface& surface, SurfaceReport& report) {
   std::vector<Spot> spots;
-  double smallest = std::numbers::pi / 3;
+  double smallest = 60;
   for (std::uint32_t t = 0; t < surface.num_triangles(); ++t) {
-    const double angle = surface.is_degenerate[t] ? 0 : smallest_angle(surface, t);
+    const double angle = surface.is_degenerate[t]
+                             ? 0
+                             : smallest_angle_deg(surface.corner(t, 0), surface.corner(t, 1), surface.corner(t, 2));
     smallest = std::min(smallest, angle);
-    if (surface.is_sound(t) && degrees(angle) < kSliverAngleDeg)
-      spots.push_back({degrees(angle), surface.centroid(t), {t}});
+    if (surface.is_sound(t) && angle < kSliverAngleDeg) spots.push_back({angle, surface.centroid(t), {t}});
   }
-  report.min_angle_deg = surface.num_triangles() > 0 ? degrees(smallest) : 0;
+  report.min_angle_deg = surface.num_triangles() > 0 ? smallest : 0;
   append_spots(surface, spots,
                {"sliver_triangles", Severity::warning, 0, "", "re-mesh the surface for better cells there", {}},
                fmt::format("{} an angle under {:g} degree", count_of(spots.size(), "triangle has", "triangles have"),

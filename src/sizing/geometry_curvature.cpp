@@ -12,6 +12,7 @@
 #include "Eigen/Core"
 #include "delfront/errors.hpp"
 #include "fmt/format.h"
+#include "geometry/angles.hpp"
 #include "sizing/geometry_facets.hpp"
 #include "sizing/geometry_plane.hpp"
 
@@ -62,7 +63,7 @@ std::vector<std::uint32_t> number_sectors(const Facets& facets, std::uint32_t& n
 
 double corner_angle(const std::array<Point, 3>& p, std::size_t k) {
   const Point a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
-  return std::atan2(length(cross(a, b)), dot(a, b));
+  return angle_between(a, b);
 }
 
 std::vector<Point> sector_normals(const Facets& facets, const std::vector<std::uint32_t>& sector, std::size_t count) {

@@ -6,14 +6,12 @@
 
 #include "delfront/errors.hpp"
 #include "fmt/format.h"
+#include "geometry/angles.hpp"
 
 namespace delfront {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-
-/// Angle between two unit vectors, accurate where it is small.
-double angle_between(Point a, Point b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 }  // namespace
 

@@ -9,16 +9,14 @@
 #include <unordered_map>
 
 #include "delfront/errors.hpp"
+#include "geometry/angles.hpp"
 
 namespace delfront {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kSliver = 1e-3;    ///< height over longest side: the normal of less says nothing
 constexpr double kWeakShare = 0.5;  ///< of the feature angle, for edges that close a gap in a line
 constexpr int kLongestGap = 4;      ///< edges
-
-double angle_between(Point a, Point b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 
 #include "delfront/size_field.hpp"
 #include "surface/front.hpp"
+#include "surface/linked_triangles.hpp"
 #include "surface/support.hpp"
 
 namespace delfront {
@@ -24,20 +25,22 @@ class RegionMesh {
   std::size_t smooth(int passes);
 
   /// @brief Divide a side at a point of the grid that nothing uses yet.
-  void split(std::uint32_t side, std::uint32_t p);
+  void split(std::uint32_t side, std::uint32_t p) { links_.split(side, p); }
   std::uint32_t add_point(Point at, std::uint32_t foot);
   /// @brief Move point v into its neighbour u, where no triangle turns over and the topology stays. A point of the
   /// border moves along the border alone.
   /// @param longest  new sides may be no longer
   bool collapse(std::uint32_t v, std::uint32_t u, double longest = std::numeric_limits<double>::infinity());
 
-  std::size_t num_sides() const { return other_.size(); }
-  bool is_alive(std::uint32_t side) const { return grid_.triangles[side / 3][0] != kNone; }
-  bool is_inner(std::uint32_t p) { return ring(p); }
+  std::size_t num_sides() const { return links_.num_sides(); }
+  bool is_alive(std::uint32_t side) const { return !links_.is_gone(side / 3); }
+  bool is_inner(std::uint32_t p) { return links_.ring(p, ring_); }
   std::size_t num_points() const { return grid_.points.size(); }
   const std::vector<Point>& points() const { return grid_.points; }
-  bool is_border(std::uint32_t side) const { return other_[side] == kNone; }
-  std::array<std::uint32_t, 2> ends(std::uint32_t side) const { return {point(side), point(next(side))}; }
+  bool is_border(std::uint32_t side) const { return links_.other(side) == kNone; }
+  std::array<std::uint32_t, 2> ends(std::uint32_t side) const {
+    return {links_.point(side), links_.point(links_.next(side))};
+  }
   Point place(std::uint32_t p) const { return grid_.points[p]; }
   std::uint32_t foot(std::uint32_t p) const { return grid_.triangle_of_point[p]; }
   /// @brief Of the triangles on both sides.
@@ -49,33 +52,20 @@ class RegionMesh {
   RegionGrid take();
 
  private:
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-  struct Ring {
-    std::vector<std::uint32_t> triangles, points;  ///< in order round the point, anticlockwise
-  };
+  static constexpr std::uint32_t kNone = LinkedTriangles::kNone;
 
-  void link();
-  void compact();
-  void fan(std::uint32_t p);
-  void bond_triangle(std::uint32_t t);
   bool may_collapse(std::uint32_t v, std::uint32_t u, double longest);
   bool flip(std::uint32_t side);
-  void bond(std::uint32_t side, std::uint32_t other);
-  bool ring(std::uint32_t p);
   bool smooth_point(std::uint32_t p);
   double worst_of_ring(Point at) const;
   bool is_joined(std::uint32_t p, std::uint32_t q);
-  std::uint32_t point(std::uint32_t side) const { return grid_.triangles[side / 3][side % 3]; }
   Point at(std::uint32_t p) const { return grid_.points[p]; }
-  static std::uint32_t next(std::uint32_t side) { return side % 3 == 2 ? side - 2 : side + 1; }
-  static std::uint32_t before(std::uint32_t side) { return side % 3 == 0 ? side + 2 : side - 1; }
   Point ring_normal() const;
 
   const SurfaceSupport& support_;
-  RegionGrid grid_;
-  std::vector<std::uint32_t> other_;    ///< by side 3 t + k (from corner k to k + 1): the same side of its neighbour
-  std::vector<std::uint32_t> side_at_;  ///< by point: a side that begins there; of the border: its first one
-  Ring ring_;
+  RegionGrid grid_;  ///< without its triangles until take()
+  LinkedTriangles links_;
+  TriangleRing ring_;
   Point ring_normal_;
 };
 

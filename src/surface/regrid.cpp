@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/surface_grid.hpp"
+#include "geometry/angles.hpp"
 #include "geometry/surface_findings.hpp"
 #include "surface/assemble.hpp"
 #include "surface/region_check.hpp"
@@ -306,30 +307,26 @@ void Regridder::fill_report(const AssembledSurface& made) const {
   r.triangles_given = model_.triangles.size();
   r.triangles = m.triangles.size();
   r.points = m.points.size();
-  r.min_angle_deg = 180;
-  r.mean_min_angle_deg = 0;
-  r.below_25_deg = 0;
   r.shortest_edge = std::numeric_limits<double>::infinity();
   r.patches.assign(m.patches.size(), {});
   for (std::size_t p = 0; p < m.patches.size(); ++p) r.patches[p].name = m.patches[PatchId(p)].name;
   for (const PatchId p : model_.patch_of_triangle) ++r.patches[p.index()].triangles_given;
-  constexpr double kDegree = 3.14159265358979323846 / 180;
+  SmallestAngles angles;
   for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-    double least = 180;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto& v = m.triangles[TriangleId(t)];
-      const Point a = m.points[v[k]], u = m.points[v[(k + 1) % 3]] - a, w = m.points[v[(k + 2) % 3]] - a;
-      least = std::min(least, std::atan2(length(cross(u, w)), dot(u, w)) / kDegree);
-      r.shortest_edge = std::min(r.shortest_edge, length(u));
-      r.longest_edge = std::max(r.longest_edge, length(u));
-    }
+    const auto& [v, w, x] = m.triangles[TriangleId(t)];
+    const Point a = m.points[v], b = m.points[w], c = m.points[x];
+    const auto [shortest, longest] = std::minmax({distance(a, b), distance(b, c), distance(c, a)});
+    r.shortest_edge = std::min(r.shortest_edge, shortest);
+    r.longest_edge = std::max(r.longest_edge, longest);
+    const double least = smallest_angle_deg(a, b, c);
+    angles.add(least);
     SurfacePatchReport& patch = r.patches[m.patch_of_triangle[TriangleId(t)].index()];
     ++patch.triangles;
     patch.min_angle_deg = std::min(patch.min_angle_deg, least);
-    r.min_angle_deg = std::min(r.min_angle_deg, least);
-    r.mean_min_angle_deg += least / double(m.triangles.size());
-    r.below_25_deg += least < 25;
   }
+  r.min_angle_deg = angles.min_deg;
+  r.mean_min_angle_deg = angles.mean_deg();
+  r.below_25_deg = angles.below_25_deg;
   for (const RegionFit& fit : fits_)
     if (fit.distance > r.largest_distance) {
       r.largest_distance = fit.distance;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "geometry/angles.hpp"
+
 namespace delfront {
 namespace {
 
@@ -35,7 +37,7 @@ SurfaceSupport::SurfaceSupport(const SurfaceParts& parts, const SurfaceRegion& r
     area_ += 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
     for (std::size_t k = 0; k < 3; ++k) {
       const Point u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];
-      const double angle = std::atan2(length(cross(u, v)), dot(u, v));
+      const double angle = angle_between(u, v);
       Point& sum = at_vertex[parts.model.triangles[TriangleId(t)][k].value];
       sum = sum + angle * parts.normal[t];
       sides += length(u);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "delfront/point.hpp"
+
+namespace delfront {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// @brief In radians, 0 to pi; 0 where a vector is nothing.
+inline double angle_between(Point a, Point b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
+
+/// @brief Of the triangle's three, in degrees.
+inline double smallest_angle_deg(Point a, Point b, Point c) {
+  return std::min({angle_between(b - a, c - a), angle_between(c - b, a - b), angle_between(a - c, b - c)}) / kDegree;
+}
+
+/// @brief The smallest angles of triangles, in degrees, summed up.
+struct SmallestAngles {
+  std::size_t triangles = 0, below_25_deg = 0;
+  double min_deg = 180, sum_deg = 0;
+
+  void add(double angle_deg) {
+    ++triangles;
+    below_25_deg += angle_deg < 25;
+    min_deg = std::min(min_deg, angle_deg);
+    sum_deg += angle_deg;
+  }
+  double mean_deg() const { return triangles > 0 ? sum_deg / double(triangles) : 0; }
+};
+
+}  // namespace delfront
