@@ -22,6 +22,7 @@ void FaceTable::set(const TopoDS_Shape& face, const FaceFacts& facts) {
   if (const int* known = index_.Seek(face)) return merge(facts_[std::size_t(*known)], facts);
   index_.Bind(face, int(facts_.size()));
   facts_.push_back(facts);
+  faces_.push_back(face);
 }
 
 const FaceFacts* FaceTable::find(const TopoDS_Shape& face) const {
@@ -42,13 +43,12 @@ void FaceTable::follow(const TopoDS_Shape& after,
   TopTools_IndexedMapOfShape there;
   TopExp::MapShapes(after, TopAbs_FACE, there);
   FaceTable next;
-  for (TopTools_DataMapOfShapeInteger::Iterator it(index_); it.More(); it.Next()) {
-    const FaceFacts& facts = facts_[std::size_t(it.Value())];
-    const TopTools_ListOfShape made = images(it.Key());
-    if (there.Contains(it.Key())) next.set(it.Key(), facts);
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const TopTools_ListOfShape made = images(faces_[i]);
+    if (there.Contains(faces_[i])) next.set(faces_[i], facts_[i]);
     for (const TopoDS_Shape& image : made)
       for (TopExp_Explorer face(image, TopAbs_FACE); face.More(); face.Next())
-        if (!face.Current().IsSame(it.Key())) next.set(face.Current(), facts);
+        if (!face.Current().IsSame(faces_[i])) next.set(face.Current(), facts_[i]);
   }
   *this = next;
 }

@@ -40,6 +40,7 @@ class FaceTable {
   static void merge(FaceFacts& into, const FaceFacts& from);
   TopTools_DataMapOfShapeInteger index_;
   std::vector<FaceFacts> facts_;
+  std::vector<TopoDS_Shape> faces_;  ///< in the order they came: that of the map is one of addresses
 };
 
 /// @brief A file's geometry on its way to the caller.

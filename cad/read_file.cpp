@@ -97,7 +97,11 @@ std::string sensible(std::string name) {
   const auto first = std::find_if(name.begin(), name.end(), [](unsigned char c) { return !std::isspace(c); });
   name.erase(name.begin(), first);
   const std::string low = lower(name);
-  if (low == "none" || low == "unnamed" || low == "noname" || low == "$" || low == "*") return {};
+  // the last ones are OpenCASCADE's own for shapes without a name
+  for (const char* word : {"none", "unnamed", "noname", "$", "*", "the product name", "compound", "compsolid", "solid",
+                           "shell", "face", "wire", "edge", "vertex", "sheet", "brep", "trimmed_surf", "trsurf"})
+    if (low == word) return {};
+  if (low.rfind("open cascade", 0) == 0) return {};
   return name;
 }
 

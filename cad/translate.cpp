@@ -13,6 +13,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <TopoDS_Wire.hxx>
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "fmt/format.h"
@@ -52,10 +53,9 @@ class Translator {
  public:
   Translator(Part& part, Result& result) : part_(part), result_(result) {
     TopExp::MapShapes(part.shape, TopAbs_FACE, faces_);
-    std::set<std::string> colours;
     for (int f = 1; f <= faces_.Extent(); ++f)
-      if (const FaceFacts* facts = part.faces.find(faces_(f))) colours.insert(facts->colour);
-    has_colours_ = colours.size() > 1;
+      if (const FaceFacts* facts = part.faces.find(faces_(f)))
+        for (const std::string& solid : facts->solids) colours_[solid].insert(facts->colour);
   }
 
   void run(const Say& say) {
@@ -128,7 +128,9 @@ class Translator {
 
   std::string grid_name(const CadFace& facts) const {
     if (!facts.name.empty()) return facts.name;
-    if (has_colours_ && !facts.colour.empty()) return "colour_" + facts.colour;
+    const auto has_several = [&](const std::string& solid) { return colours_.at(solid).size() > 1; };
+    const bool is_coloured = std::any_of(facts.solids.begin(), facts.solids.end(), has_several);
+    if (is_coloured && !facts.colour.empty()) return "colour_" + facts.colour;
     std::string name;
     for (const std::string& solid : facts.solids)
       if (!solid.empty()) name += (name.empty() ? "" : "-") + solid;
@@ -160,7 +162,7 @@ class Translator {
   Part& part_;
   Result& result_;
   TopTools_IndexedMapOfShape vertices_, edges_, faces_;
-  bool has_colours_ = false;
+  std::map<std::string, std::set<std::string>> colours_;  ///< of each part
 };
 
 }  // namespace

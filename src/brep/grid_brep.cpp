@@ -24,6 +24,8 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
+constexpr double kFairAngleDeg = 15;  ///< charts far from lengths in space that give it do
+constexpr int kAllOver = 3;  ///< failures of a face until its sizes are lowered all over it
 
 class BrepGridder {
  public:
@@ -37,7 +39,7 @@ class BrepGridder {
         wanted_(working_, options.most_turn_deg * kDegree),
         grids_(brep.faces.size()),
         failures_(brep.faces.size(), 0) {
-    wanted_.find_tips(brep);
+    wanted_.look_at(brep);
     lowered_.growth = kGrowth;
   }
 
@@ -89,7 +91,7 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped, else directly in space, else in charts that are far from lengths in space.
+  /// Mapped; else the better of charts that are far from lengths in space, where angles are fair, and of the direct way.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
@@ -106,9 +108,23 @@ class BrepGridder {
     if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
     if (options_.method == BrepOptions::Method::mapped) return;
     const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
+    FaceGrid mapped;
+    if (options_.method == BrepOptions::Method::choose && fill([&] { map(true); })) {
+      if (smallest_angle_of(grid) > kFairAngleDeg) return;
+      mapped = std::move(grid);
+    }
     const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
-    if (!is_done && options_.method == BrepOptions::Method::choose) fill([&] { map(true); });
-    if (!grid.is_mapped) grid.why_direct = why;
+    grid.why_direct = why;
+    if (mapped.triangles.empty()) return;
+    if (!is_done || smallest_angle_of(grid) < smallest_angle_of(mapped))
+      grid = std::move(mapped);
+  }
+
+  static double smallest_angle_of(const FaceGrid& grid) {
+    double least = 180;
+    for (const auto& t : grid.triangles)
+      least = std::min(least, smallest_angle_deg(grid.points[t[0]].at, grid.points[t[1]].at, grid.points[t[2]].at));
+    return least;
   }
 
   void lower_at(Point at) {
@@ -117,14 +133,14 @@ class BrepGridder {
     ++report_.sizes_lowered;
   }
 
-  /// Sizes are lowered at the place, the next time all over the face.
+  /// Sizes are lowered at the place, each third time all over the face.
   void fail(FaceId f, const std::string& why, Point at) {
     const BrepFace& face = brep_.faces[f];
     why_ = face.name.empty() ? fmt::format("face {}: {}", f.value, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
     lower_at(at);
     const auto& points = grids_[f].points;
-    if (failures_[f.index()]++ > 0)
+    if (++failures_[f.index()] % kAllOver == 0)
       for (std::size_t i = 0; i < points.size(); i += points.size() / kPlacesOfFace + 1) lower_at(points[i].at);
   }
 

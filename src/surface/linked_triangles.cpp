@@ -19,14 +19,19 @@ void LinkedTriangles::link(std::vector<Triangle> triangles, std::size_t num_poin
   std::vector<std::pair<std::uint64_t, std::uint32_t>> sides;
   sides.reserve(n);
   for (std::uint32_t s = 0; s < n; ++s) {
-    const auto [low, high] = std::minmax(point(s), point(next(s)));
-    sides.push_back({std::uint64_t(low) << 32 | high, s});
+    const std::uint32_t a = point(s), b = point(next(s));
+    sides.push_back({std::uint64_t(std::min(a, b)) << 32 | std::max(a, b), s});
   }
   radix_sort(sides);
   other_.assign(n, kNone);
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i)
-    if (sides[i].first == sides[i + 1].first && !std::binary_search(open.begin(), open.end(), sides[i].first))
-      bond(sides[i].second, sides[i + 1].second);
+  // only two that run opposite ways: round a point of a surface that is none, the way on would never end
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    const auto [key, s] = sides[i];
+    const std::uint32_t w = sides[i + 1].second;
+    if (key == sides[i + 1].first && other_[s] == kNone && point(s) != point(w) &&
+        !std::binary_search(open.begin(), open.end(), key))
+      bond(s, w);
+  }
   side_at_.assign(num_points, kNone);
   for (std::uint32_t s = 0; s < n; ++s) side_at_[point(s)] = s;
 }
