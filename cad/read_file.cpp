@@ -262,6 +262,14 @@ bool ends_whole(const std::string& path, const std::string& mark) {
   return text.find(mark) != std::string::npos;
 }
 
+bool has_end_of_iges(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string line, last;
+  while (std::getline(in, line))
+    if (line.find_first_not_of(" \r\n\x1a") != std::string::npos) last = line;
+  return last.size() > 72 && last[72] == 'T';
+}
+
 void read_step(const std::string& path, Part& part, const Say& say) {
   part.report.format = "STEP";
   if (first_bytes(path, 4096).find("ISO-10303-21") == std::string::npos)
@@ -300,6 +308,8 @@ void read_iges(const std::string& path, Part& part, const Say& say) {
   const std::string first = first_bytes(path, 80);
   if (first.size() < 80 || (first[72] != 'S' && first[72] != 'C' && first[72] != 'B'))
     throw Failure("this is no IGES file: column 73 of its first line is not S");
+  if (!has_end_of_iges(path))
+    throw Failure("the IGES file is not whole: it does not end with a line that has T in column 73; copy it again");
   IGESCAFControl_Reader reader;
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Failure("the IGES file cannot be parsed");
   const Handle(IGESData_IGESModel) model = reader.IGESModel();
@@ -334,8 +344,13 @@ void read_brep_text(const std::string& path, Part& part, const char* format) {
   if (all.find("\nTShapes ", start) == std::string::npos)
     throw Failure(fmt::format("the {} file is not whole: it has no list of shapes (TShapes)", format));
   std::istringstream stream(all.substr(start));
+  stream.exceptions(std::ios::failbit | std::ios::badbit);  // at its end the reader would go on for ever
   BRep_Builder builder;
-  BRepTools::Read(part.shape, stream, builder);
+  try {
+    BRepTools::Read(part.shape, stream, builder);
+  } catch (const std::ios::failure&) {
+    throw Failure(fmt::format("the {} file is not whole, or damaged", format));
+  }
   check_transferred(true, part.shape, format);
 }
 

@@ -24,7 +24,7 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
-constexpr double kFairAngleDeg = 15;  ///< charts far from lengths in space that give it do
+constexpr double kFairAngleDeg = 3;  ///< charts far from lengths in space that give it do
 constexpr int kAllOver = 3;  ///< failures of a face until its sizes are lowered all over it
 
 class BrepGridder {
