@@ -158,8 +158,7 @@ CurveData spline_data(const Handle(Geom_Curve) & given, std::array<double, 2> ra
   CurveData data;
   data.kind = CurveData::Kind::nurbs;
   data.nurbs = data_of(c);
-  if (is_usable(data.nurbs.knots, data.nurbs.degree) &&
-      covers(data.nurbs.knots, data.nurbs.degree, range[0], range[1]))
+  if (is_usable(data.nurbs.knots, data.nurbs.degree) && covers(data.nurbs.knots, data.nurbs.degree, range[0], range[1]))
     return data;
   return other_curve(given);
 }
@@ -181,8 +180,7 @@ ParameterCurveData spline_data(const Handle(Geom2d_Curve) & given, std::array<do
   ParameterCurveData data;
   data.kind = ParameterCurveData::Kind::nurbs;
   data.nurbs = data_of(c);
-  if (is_usable(data.nurbs.knots, data.nurbs.degree) &&
-      covers(data.nurbs.knots, data.nurbs.degree, range[0], range[1]))
+  if (is_usable(data.nurbs.knots, data.nurbs.degree) && covers(data.nurbs.knots, data.nurbs.degree, range[0], range[1]))
     return data;
   return other_parameter_curve(given);
 }
@@ -332,8 +330,7 @@ SurfaceData surface_data(const Handle(Geom_Surface) & given, const ParameterBox&
   if (const auto e = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(s))
     return swept_surface(Kind::extrusion, s, e->BasisCurve(), gp_Pnt(), e->Direction(), {box.low.x, box.high.x});
   if (const auto r = Handle(Geom_SurfaceOfRevolution)::DownCast(s))
-    return swept_surface(Kind::revolution, s, r->BasisCurve(), r->Location(), r->Direction(),
-                         {box.low.y, box.high.y});
+    return swept_surface(Kind::revolution, s, r->BasisCurve(), r->Location(), r->Direction(), {box.low.y, box.high.y});
   return other_surface(s);
 }
 

@@ -66,9 +66,13 @@ Result* read(const Request* request) {
 
 void release(Result* result) { delete result; }
 
-constexpr ModuleInfo kInfo{kInterfaceVersion, sizeof(Request), sizeof(Result),
-                           sizeof(Face),      "OpenCASCADE " OCC_VERSION_COMPLETE,
-                           read,              release};
+constexpr ModuleInfo kInfo{kInterfaceVersion,
+                           sizeof(Request),
+                           sizeof(Result),
+                           sizeof(Face),
+                           "OpenCASCADE " OCC_VERSION_COMPLETE,
+                           read,
+                           release};
 
 }  // namespace
 }  // namespace delfront::cad

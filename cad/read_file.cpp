@@ -11,16 +11,16 @@
 #include <STEPCAFControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepRepr_RepresentationItem.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
 #include <TDF_ChildIterator.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
-#include <TopExp.hxx>
 #include <TopoDS.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
@@ -51,13 +51,13 @@ struct Unit {
   const char* code;
   double metres;
 };
-constexpr Unit kUnits[] = {{"inch", "in", "INCH", 0.0254},        {"millimetre", "mm", "MM", 1e-3},
-                           {"millimeter", "mm", "MM", 1e-3},      {"foot", "ft", "FT", 0.3048},
-                           {"feet", "ft", "FT", 0.3048},          {"mile", "mi", "MI", 1609.344},
-                           {"kilometre", "km", "KM", 1e3},        {"kilometer", "km", "KM", 1e3},
-                           {"centimetre", "cm", "CM", 1e-2},      {"centimeter", "cm", "CM", 1e-2},
-                           {"micrometre", "um", "UM", 1e-6},      {"micron", "um", "UM", 1e-6},
-                           {"metre", "m", "M", 1},                {"meter", "m", "M", 1}};
+constexpr Unit kUnits[] = {{"inch", "in", "INCH", 0.0254},   {"millimetre", "mm", "MM", 1e-3},
+                           {"millimeter", "mm", "MM", 1e-3}, {"foot", "ft", "FT", 0.3048},
+                           {"feet", "ft", "FT", 0.3048},     {"mile", "mi", "MI", 1609.344},
+                           {"kilometre", "km", "KM", 1e3},   {"kilometer", "km", "KM", 1e3},
+                           {"centimetre", "cm", "CM", 1e-2}, {"centimeter", "cm", "CM", 1e-2},
+                           {"micrometre", "um", "UM", 1e-6}, {"micron", "um", "UM", 1e-6},
+                           {"metre", "m", "M", 1},           {"meter", "m", "M", 1}};
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -179,7 +179,8 @@ class Document {
       if (colour.empty()) colour = from.colour;
       TopTools_IndexedMapOfShape faces;
       TopExp::MapShapes(solids(s), TopAbs_FACE, faces);
-      for (int f = 1; f <= faces.Extent(); ++f) note_face(product, faces(f), at, {colour, from.layer, name}, true, part);
+      for (int f = 1; f <= faces.Extent(); ++f)
+        note_face(product, faces(f), at, {colour, from.layer, name}, true, part);
     }
     for (int f = 1; f <= all.Extent(); ++f)
       if (solids.IsEmpty()) note_face(product, all(f), at, from, false, part);

@@ -95,11 +95,11 @@ class Translator {
     else
       made.curve = curve_data(curve, made.range);
     if (curve.IsNull() && !BRep_Tool::Degenerated(edge))
-      part_.report.suspicious.push_back({"edge_without_curve",
-                                         fmt::format("an edge between corners {} and {} has no curve in space",
-                                                     made.corners[0] + 1, made.corners[1] + 1),
-                                         made.corners[0] >= 0 ? result_.vertices[std::size_t(made.corners[0])].at
-                                                              : Point{}});
+      part_.report.suspicious.push_back(
+          {"edge_without_curve",
+           fmt::format("an edge between corners {} and {} has no curve in space", made.corners[0] + 1,
+                       made.corners[1] + 1),
+           made.corners[0] >= 0 ? result_.vertices[std::size_t(made.corners[0])].at : Point{}});
     result_.edges.push_back(std::move(made));
     return edges_.Add(given) - 1;
   }

@@ -102,7 +102,16 @@ Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport
     }
     faces.push_back(std::move(json));
   }
-  Json json = {{"corners", corners}, {"edges", edges}, {"faces", faces}};
+  Json json = {{"corners", corners},
+               {"edges", edges},
+               {"faces", faces},
+               {"grid",
+                {{"triangles", grid.triangles},
+                 {"min_angle", grid.min_angle_deg},
+                 {"mean_min_angle", grid.mean_min_angle_deg},
+                 {"below_25", grid.below_25_deg},
+                 {"largest_distance", grid.largest_distance},
+                 {"largest_normal_angle", grid.largest_normal_angle_deg}}}};
   if (!cad.format.empty()) json["cad"] = cad_json(cad);
   return json;
 }

@@ -125,8 +125,8 @@ struct BrepFace {
   std::shared_ptr<const SmoothSurface> surface;
   bool is_reversed = false;  ///< its triangles face against the surface's normal
   std::vector<std::vector<BrepUse>> loops;
-  std::string name;  ///< faces of one name are one patch of Model
-  std::string kind;  ///< of the patch: "wall", …
+  std::string name;      ///< faces of one name are one patch of Model
+  std::string kind;      ///< of the patch: "wall", …
   double tolerance = 0;  ///< between the surface and its edges; below the Brep's: that
 };
 
@@ -137,7 +137,8 @@ struct Brep {
   Array<CornerId, BrepCorner> corners;
   Array<EdgeId, BrepEdge> edges;
   Array<FaceId, BrepFace> faces;
-  double tolerance = 0;  ///< between what should coincide; 0: 1e-9 of the diagonal; corners, edges and faces may have more
+  double tolerance =
+      0;  ///< between what should coincide; 0: 1e-9 of the diagonal; corners, edges and faces may have more
 };
 
 /// @brief What makes a Brep unfit for gridding: ids that do not exist, ranges, loops that do not close, parameter

@@ -22,8 +22,8 @@ bool is_cad_file(const std::string& path);
 bool has_cad_module(std::string& why);
 
 struct CadOptions {
-  /// @brief Gaps up to which loose faces are sewn, in units of the file; 0: 1e-6 of the diagonal, raised step by step to
-  /// 1e-4 of it while edges stay free.
+  /// @brief Gaps up to which loose faces are sewn, in units of the file; 0: 1e-6 of the diagonal, raised step by step
+  /// to 1e-4 of it while edges stay free.
   double tolerance = 0;
   bool heals = true;     ///< wires, small edges, missing seams and parameter curves, orientation
   bool sews = true;      ///< faces with free edges
@@ -62,9 +62,9 @@ struct CadReport {
 ///
 /// Planes, cylinders, cones, spheres, tori, lines, circles, ellipses, splines, surfaces by extrusion and by revolution
 /// become our own classes with the parameters of the file; what else there is asks OpenCASCADE at each evaluation (from
-/// several threads). Placements of assemblies are applied. A face is named by its own name, else by its colour where the
-/// part has several, else by its part; else it has no name. Tolerances of corners, edges and faces are kept, and raised
-/// where the file's own do not hold.
+/// several threads). Placements of assemblies are applied. A face is named by its own name, else by its colour where
+/// the part has several, else by its part; else it has no name. Tolerances of corners, edges and faces are kept, and
+/// raised where the file's own do not hold.
 /// @throws InputError  no such file, not readable as what its suffix says, no faces; no module (what to install)
 /// @throws Cancelled, LimitError  within a second or so
 /// @par Threads  one file at a time in a process: OpenCASCADE has global settings

@@ -122,7 +122,8 @@ class Checker {
         if (c.is_valid()) allowed = std::max(allowed, brep_.corners[c].tolerance);
     const Point at = face.surface->at(a);
     for (const double f : {0.25, 0.5, 0.75, 1.0})
-      if (!(distance(at, face.surface->at({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)})) <= 2 * allowed)) return false;
+      if (!(distance(at, face.surface->at({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)})) <= 2 * allowed))
+        return false;
     return true;
   }
 

@@ -8,6 +8,7 @@ namespace delfront {
 namespace {
 
 constexpr double kSharp = 1.5;        ///< radians along a side
+constexpr double kLowShare = 4;       ///< of the tolerance of edges: triangles as low as that face as they may
 constexpr double kWellMapped = 1e-4;  ///< sine between tangents from where their cross product is good enough
 
 Point normal_of(const SmoothSurface& surface, Point2 uv) {
@@ -61,7 +62,7 @@ Point2 middle_of(const SmoothSurface& surface, const FaceGrid& grid, const std::
 
 }  // namespace
 
-void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid) {
+void check_face_grid(const BrepFace& face, double most_angle, double tolerance, FaceGrid& grid) {
   if (!grid.gave_up.empty()) return;
   if (grid.triangles.empty()) return grid.fail("there are no triangles", grid.points[0].at);
   check_sides(grid);
@@ -82,8 +83,9 @@ void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid) {
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
     for (const std::uint32_t p : t) {
       if (grid.points[p].is_pole || dot(twice, normal[p]) >= least * size) continue;
-      if (dot(twice, normal[p]) < least_allowed * size && dot(twice, n) > 0 &&
-          is_sharper(surface, grid.points[p], longest))
+      if (dot(twice, normal[p]) < least_allowed * size &&
+          (size < kLowShare * tolerance * longest ||
+           (dot(twice, n) > 0 && is_sharper(surface, grid.points[p], longest))))
         continue;
       least = dot(twice, normal[p]) / size;
       worst_at = middle;

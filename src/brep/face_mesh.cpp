@@ -13,7 +13,7 @@ namespace {
 constexpr double kGoal = 0.345;  ///< squared sine of 36 degrees
 constexpr int kRounds = 4, kSweeps = 4, kMoves = 8, kDirections = 8;
 constexpr std::size_t kMostLifts = 1000, kTrianglesPerLift = 20;  ///< searches a face: that many and one for so many
-constexpr double kLeastGain = 1e-3;   ///< of a squared sine
+constexpr double kLeastGain = 1e-3;                               ///< of a squared sine
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
 constexpr double kAgree = 0.3;        ///< least cosine between triangles and the surface at their corners
 constexpr double kMostLonger = 1.3;   ///< sides that a collapse makes, of the longest there

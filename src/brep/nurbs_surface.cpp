@@ -10,7 +10,8 @@ namespace {
 constexpr double kSamePlace = 1e-12;       ///< of the extent of the control points
 constexpr double kSameDirection = 1e-9;    ///< of the largest derivative
 constexpr std::size_t kMostSamples = 400;  ///< along a side
-constexpr double kSettled = 1e-12;  ///< of the squared distance: a step of Newton's method that gains no more is the last
+constexpr double kSettled =
+    1e-12;  ///< of the squared distance: a step of Newton's method that gains no more is the last
 constexpr int kMostSteps = 40, kMostHalvings = 10;
 
 class NurbsSurface final : public SmoothSurface {

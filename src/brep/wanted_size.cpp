@@ -4,8 +4,8 @@
 namespace delfront {
 namespace {
 
-constexpr int kSamples = 24;          ///< each way
-constexpr double kFloorShare = 1e-3;     ///< of the diagonal
+constexpr int kSamples = 24;            ///< each way
+constexpr double kFloorShare = 1e-3;    ///< of the diagonal
 constexpr double kMostLowering = 0.05;  ///< of the least size that is asked for, where that gives less
 constexpr double kTipReach = 0.2;     ///< of a face's extent from its tip: sizes there are not lowered below about that
 constexpr double kSmoothPole = 0.99;  ///< least cosine between normals round a pole that is no tip

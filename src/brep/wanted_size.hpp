@@ -17,8 +17,8 @@ class WantedSize {
 
   const SizeField& asked() const { return asked_; }
 
-  /// @brief Where surfaces come to a tip: bends are infinite there, sizes need not be nothing. And how large all is: what
-  /// is sharper than that by far counts as a crease.
+  /// @brief Where surfaces come to a tip: bends are infinite there, sizes need not be nothing. And how large all is:
+  /// what is sharper than that by far counts as a crease.
   void look_at(const Brep& brep);
 
   /// @brief What is left of an asked size where so much is bent.

@@ -103,7 +103,9 @@ class Builder {
     }
   }
 
-  void note(const char* kind, const std::string& message, Point at) { report_.suspicious.push_back({kind, message, at}); }
+  void note(const char* kind, const std::string& message, Point at) {
+    report_.suspicious.push_back({kind, message, at});
+  }
   void repaired(const char* kind, const std::string& message, Point at) {
     report_.repairs.push_back({kind, message, at});
   }
@@ -185,9 +187,9 @@ class Builder {
       }
     }
     if (!use.curve)
-      throw InputError(fmt::format("{} has no parameter curve for its degenerate {}", face_name(f),
-                                   edge_name(use.edge.index())),
-                       place_of(use.edge.index()));
+      throw InputError(
+          fmt::format("{} has no parameter curve for its degenerate {}", face_name(f), edge_name(use.edge.index())),
+          place_of(use.edge.index()));
     raise_tolerance(f, use, off, allowed);
     return use;
   }
@@ -336,8 +338,8 @@ class Builder {
       const double size = length_of(edge);
       const Point at = edge.curve->at(edge.range[0]);
       if (size < kTinyEdge * diagonal_)
-        note("tiny_edge", fmt::format("{} is {:.3g} long, {:.2g} of the diagonal", edge_name(e), size, size / diagonal_),
-             at);
+        note("tiny_edge",
+             fmt::format("{} is {:.3g} long, {:.2g} of the diagonal", edge_name(e), size, size / diagonal_), at);
       if (edge.tolerance > kLooseShare * diagonal_ || edge.tolerance > 0.5 * size)
         note("loose_tolerance",
              fmt::format("{}, {:.3g} long, lies within {:.3g} of its faces only", edge_name(e), size, edge.tolerance),

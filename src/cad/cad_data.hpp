@@ -48,14 +48,14 @@ struct ParameterCurveData {
 
 struct SurfaceData {
   enum class Kind { plane, cylinder, cone, sphere, torus, nurbs, extrusion, revolution, other } kind = Kind::plane;
-  SpaceFrame frame;       ///< may be left-handed; revolution: z the axis; extrusion: z the way
-  double a = 0, b = 0;    ///< radius; torus: and of the tube; cone: radius at v = 0 and half angle, of any sign
+  SpaceFrame frame;     ///< may be left-handed; revolution: z the axis; extrusion: z the way
+  double a = 0, b = 0;  ///< radius; torus: and of the tube; cone: radius at v = 0 and half angle, of any sign
   NurbsSurfaceData nurbs;
   CurveData curve;  ///< extrusion: curve(u) + v z; revolution: curve(v) turned by u
   std::shared_ptr<const OtherSurface> other;
-  ParameterBox box;                     ///< sides may be infinite
-  std::array<double, 2> period{0, 0};   ///< as the file says
-  DegenerateSides degenerate;           ///< other: sides that are points
+  ParameterBox box;                    ///< sides may be infinite
+  std::array<double, 2> period{0, 0};  ///< as the file says
+  DegenerateSides degenerate;          ///< other: sides that are points
 };
 
 struct Vertex {

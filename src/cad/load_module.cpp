@@ -29,8 +29,8 @@ std::vector<std::string> places() {
       folders.push_back(library.parent_path());
   std::vector<std::string> found;
   for (const fs::path& folder : folders)
-    for (const fs::path& at : {folder, folder.parent_path() / "lib", folder.parent_path() / "lib" / "delfront",
-                               folder.parent_path()}) {
+    for (const fs::path& at :
+         {folder, folder.parent_path() / "lib", folder.parent_path() / "lib" / "delfront", folder.parent_path()}) {
       const std::string path = (at / kFile).string();
       if (fs::exists(path, ignored) && std::find(found.begin(), found.end(), path) == found.end())
         found.push_back(path);

@@ -46,15 +46,11 @@ class RoundOrStraight final : public ParameterCurve {
   ParameterCurveDerivatives derivatives(double t) const override {
     if (!is_round_) return {place(t, 0), {x_.x, x_.y}, {}};
     const double c = std::cos(t), s = std::sin(t);
-    return {place(c, s),
-            {c * y_.x - s * x_.x, c * y_.y - s * x_.y},
-            {-c * x_.x - s * y_.x, -c * x_.y - s * y_.y}};
+    return {place(c, s), {c * y_.x - s * x_.x, c * y_.y - s * x_.y}, {-c * x_.x - s * y_.x, -c * x_.y - s * y_.y}};
   }
 
  private:
-  Point2 place(double f, double g) const {
-    return {origin_.x + f * x_.x + g * y_.x, origin_.y + f * x_.y + g * y_.y};
-  }
+  Point2 place(double f, double g) const { return {origin_.x + f * x_.x + g * y_.x, origin_.y + f * x_.y + g * y_.y}; }
   Point2 origin_, x_, y_;
   bool is_round_;
 };
@@ -194,7 +190,8 @@ class OtherSurfaceOf final : public SmoothSurface {
 SurfacePointer make_spline_surface(const SurfaceData& data, const ParameterBox& used) {
   SurfacePointer ours = make_nurbs_surface(data.nurbs);
   if (!data.other) return ours;  // the face stays within the knots
-  const bool is_same = (data.period[0] > 0) == (ours->period()[0] > 0) && (data.period[1] > 0) == (ours->period()[1] > 0);
+  const bool is_same =
+      (data.period[0] > 0) == (ours->period()[0] > 0) && (data.period[1] > 0) == (ours->period()[1] > 0);
   return is_same ? ours : std::make_shared<OtherSurfaceOf>(data, used);
 }
 

@@ -135,9 +135,10 @@ void tell(const CadReport& cad, const std::string& path, Context& context) {
   tell_notes(cad.repairs, path, LogLevel::info, context);
   tell_notes(cad.suspicious, path, LogLevel::warning, context);
   if (cad.free_edges > 0)
-    context.warn(fmt::format("{}: {} edges bound one face only: the surface is open there, and bounds no volume unless "
-                             "something else closes it (the surface alone: --stop-after surface)",
-                             path, cad.free_edges));
+    context.warn(
+        fmt::format("{}: {} edges bound one face only: the surface is open there, and bounds no volume unless "
+                    "something else closes it (the surface alone: --stop-after surface)",
+                    path, cad.free_edges));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of CAD files needs no OpenCASCADE: suffixes, missing files, loops put in order, our own curves and surfaces.
+#include "delfront/cad.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 
 #include "cad/order_loop.hpp"
 #include "cad/shapes.hpp"
-#include "delfront/cad.hpp"
 
 namespace delfront {
 namespace {

@@ -204,8 +204,7 @@ TEST(CadFiles, D4_what_is_no_such_file_is_refused) {
   EXPECT_NE(message("text.igs", "hello\n").find("no IGES file"), std::string::npos);
   EXPECT_NE(message("step.brep", text).find("no BREP file"), std::string::npos);
   EXPECT_NE(message("text.egads", "hello\n").find("no EGADS file"), std::string::npos);
-  const std::string nothing =
-      text.substr(0, text.find("DATA;") + 5) + "\nENDSEC;\nEND-ISO-10303-21;\n";
+  const std::string nothing = text.substr(0, text.find("DATA;") + 5) + "\nENDSEC;\nEND-ISO-10303-21;\n";
   EXPECT_NE(message("nothing.step", nothing).find("no faces"), std::string::npos);
   const std::string brep = file("whole.brep");
   occ::write_brep(occ::tee(), brep);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the tests write and ask; errors are thrown, as in any test.
+#include "occ_files.hpp"
+
 #include <BOPAlgo_Builder.hxx>
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
@@ -48,8 +50,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "occ_files.hpp"
-
 namespace delfront::occ {
 namespace {
 
@@ -85,7 +85,9 @@ void write_iges(const TopoDS_Shape& shape, const std::string& path) {
   require(writer.Write(path.c_str()), path);
 }
 
-void write_brep(const TopoDS_Shape& shape, const std::string& path) { require(BRepTools::Write(shape, path.c_str()), path); }
+void write_brep(const TopoDS_Shape& shape, const std::string& path) {
+  require(BRepTools::Write(shape, path.c_str()), path);
+}
 
 void write_coloured_box(const std::string& name, const std::vector<Colour>& colours, const std::string& path) {
   be_silent();
