@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -66,27 +67,78 @@ class RefineCommand : public Command {
   }
 
   int run(const std::string& command_line) override {
-    check_words();
+    check_report();
     Terminal terminal = make_terminal();
     Context context;
-    prepare(context, terminal);
-    set_limits(context);
-    const Mesh coarse = read_grid(context);
-    const Model model = geometry_.empty() ? Model() : read_geometry(coarse, context);
-    if (!geometry_.empty()) options_.model = &model;
-    RefineGridReport report;
-    const Mesh fine = refine_grid(coarse, options_, report, context);
-    check_result(fine, context);
-    const std::vector<std::string> changes = write(fine, context);
-    terminal.clear_bar();
-    for (const std::string& warning : warnings_of(report)) terminal.log(LogLevel::warning, warning);
-    for (const std::string& change : changes) terminal.log(LogLevel::warning, change);
-    if (!report_.empty()) write_json(report_, report_json(command_line, coarse, fine, report, context));
-    if (terminal.verbosity() >= 0 && report_ != "-") print(fine, report);
+    Facts facts;
+    facts.command = command_line;
+    try {
+      work(terminal, context, facts);
+    } catch (const Error& e) {
+      facts.exit_code = e.exit_code;
+      facts.error = e.what();
+      facts.places = e.places;
+      report_failure(terminal, facts, context);
+      throw;
+    } catch (const std::bad_alloc&) {
+      facts.exit_code = ExitCode::limit_reached;
+      facts.error = "out of memory";
+      report_failure(terminal, facts, context);
+      throw;
+    }
+    if (!report_.empty()) write_json(report_, report_json(facts, context));
+    if (terminal.verbosity() >= 0 && report_ != "-") print(facts);
     return static_cast<int>(ExitCode::done);
   }
 
  private:
+  /// What a run knows of itself, however it ends.
+  struct Facts {
+    std::string command, error;
+    ExitCode exit_code = ExitCode::done;
+    std::vector<Place> places;
+    Mesh fine;
+    nlohmann::ordered_json cells_before = nullptr, cells = nullptr;
+    RefineGridReport report;
+    std::vector<std::string> warnings, files_written;
+  };
+
+  void work(Terminal& terminal, Context& context, Facts& facts) {
+    check_words();
+    prepare(context, terminal);
+    set_limits(context);
+    const Mesh coarse = read_grid(context);
+    facts.cells_before = count_cells(coarse);
+    const Model model = geometry_.empty() ? Model() : read_geometry(coarse, context);
+    if (!geometry_.empty()) options_.model = &model;
+    facts.fine = refine_grid(coarse, options_, facts.report, context);
+    check_result(facts.fine, context);
+    facts.cells = count_cells(facts.fine);
+    facts.warnings = all_warnings(facts.report);
+    write(context, facts);
+    terminal.clear_bar();
+    for (const std::string& warning : facts.warnings) terminal.log(LogLevel::warning, warning);
+  }
+
+  /// That there is no report either is said, and the error stays what it was.
+  void report_failure(Terminal& terminal, const Facts& facts, const Context& context) const {
+    terminal.clear_bar();
+    if (report_.empty()) return;
+    try {
+      write_json(report_, report_json(facts, context));
+    } catch (const Error& e) {
+      terminal.log(LogLevel::warning, fmt::format("no report: {}", e.what()));
+    }
+  }
+
+  void check_report() const {
+    if (report_.empty() || report_ == "-") return;
+    refuse_to_overwrite(report_);
+    if (std::find(outputs_.begin(), outputs_.end(), report_) != outputs_.end())
+      throw UsageError(fmt::format("-o and --report name the same file, {}", report_));
+    check_writable(report_);
+  }
+
   void check_words() const {
     if (options_.levels < 1)
       throw UsageError(
@@ -98,11 +150,6 @@ class RefineCommand : public Command {
       refuse_to_overwrite(out);
       check_writable(out);
     }
-    if (report_.empty() || report_ == "-") return;
-    refuse_to_overwrite(report_);
-    if (std::find(outputs_.begin(), outputs_.end(), report_) != outputs_.end())
-      throw UsageError(fmt::format("-o and --report name the same file, {}", report_));
-    check_writable(report_);
   }
 
   void refuse_to_overwrite(const std::string& out) const {
@@ -172,77 +219,71 @@ class RefineCommand : public Command {
     context.progress("check", 1, 1, "grid");
   }
 
-  std::vector<std::string> write(const Mesh& fine, Context& context) const {
+  void write(Context& context, Facts& facts) const {
     const StageTimer timer(context, "write");
-    std::vector<std::string> changes;
     const WriteOptions how{.binary = !is_ascii_, .version = "", .compress = is_compressed_};
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       context.progress("write", i, outputs_.size(), "files");
-      for (const std::string& change : write_mesh(fine, outputs_[i], context, how, to_))
-        changes.push_back(fmt::format("{}: {}", outputs_[i], change));
+      for (const std::string& change : write_mesh(facts.fine, outputs_[i], context, how, to_))
+        facts.warnings.push_back(fmt::format("{}: {}", outputs_[i], change));
+      facts.files_written.push_back(outputs_[i]);
     }
     context.progress("write", outputs_.size(), outputs_.size(), "files");
-    return changes;
   }
 
-  std::vector<std::string> warnings_of(const RefineGridReport& report) const {
-    std::vector<std::string> warnings;
-    if (!report.groups_not_in_model.empty())
-      warnings.push_back(fmt::format("{} has nothing called {}: new points there stay in the middle of their edges",
-                                     geometry_, fmt::join(report.groups_not_in_model, ", ")));
-    if (!geometry_.empty() && report.points_on_surface + report.points_on_features == 0)
-      warnings.push_back(
-          fmt::format("no new point had to be moved: the boundary of {} is {} already, or nowhere near "
-                      "it (same units?)",
-                      in_, geometry_));
-    if (!report.reversed_places.empty()) {
-      const Point at = report.reversed_places[0].at;
-      warnings.push_back(
-          fmt::format("{} new points stand halfway between their edge and {}, {} on their edge, since "
-                      "cells would have been inverted or squashed; the first at ({:.9g}, {:.9g}, "
-                      "{:.9g}){}",
-                      report.halved, geometry_, report.reversed, at.x, at.y, at.z,
-                      report_.empty() ? "; --report FILE lists them" : ""));
-    }
+  std::vector<std::string> all_warnings(const RefineGridReport& report) const {
+    std::vector<std::string> warnings = warnings_of(report, geometry_);
+    if (!geometry_.empty() && report.points_on_surface + report.points_on_features + report.out_of_reach == 0)
+      warnings.push_back(fmt::format("no new point had to be moved: the boundary of {} is {} already", in_, geometry_));
+    if (!report.reversed_places.empty() && report_.empty()) warnings.back() += "; --report FILE lists them";
     return warnings;
   }
 
-  std::string report_json(const std::string& command_line, const Mesh& coarse, const Mesh& fine,
-                          const RefineGridReport& report, const Context& context) const {
+  static nlohmann::ordered_json count_cells(const Mesh& mesh) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const CellBlock& block : mesh.blocks) json[name_of(block.type)] = block.size();
+    return json;
+  }
+
+  std::string report_json(const Facts& facts, const Context& context) const {
     using Json = nlohmann::ordered_json;
-    const auto cells = [](const Mesh& mesh) {
-      Json json = Json::object();
-      for (const CellBlock& block : mesh.blocks) json[name_of(block.type)] = block.size();
-      return json;
-    };
+    const RefineGridReport& report = facts.report;
     Json stages = Json::array();
     for (const StageTime& time : context.stage_times)
       stages.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
-    const Json json = {{"command", command_line},
+    const Json json = {{"command", facts.command},
                        {"version", kVersion},
+                       {"outcome", outcome_name(facts.exit_code)},
+                       {"exit_code", static_cast<int>(facts.exit_code)},
+                       {"error", facts.error.empty() ? Json(nullptr) : Json(facts.error)},
+                       {"places", to_json(facts.places, kMaxPlaces)},
                        {"input", in_},
                        {"geometry", geometry_},
                        {"threads", context.threads},
                        {"levels", report.levels},
-                       {"cells_before", cells(coarse)},
-                       {"cells", cells(fine)},
+                       {"cells_before", facts.cells_before},
+                       {"cells", facts.cells},
                        {"num_points", report.num_points},
                        {"points_on_surface", report.points_on_surface},
                        {"points_on_features", report.points_on_features},
                        {"largest_move", report.largest_move},
+                       {"boundary_points", report.boundary_points},
+                       {"out_of_reach", report.out_of_reach},
                        {"halved", report.halved},
                        {"reversed", report.reversed},
                        {"reversed_places", to_json(report.reversed_places, kMaxPlaces)},
                        {"groups_not_in_geometry", report.groups_not_in_model},
+                       {"warnings", facts.warnings},
                        {"stages", stages},
                        {"seconds", context.seconds_since_start()},
                        {"peak_memory_bytes", peak_resident_memory()},
-                       {"files_written", outputs_}};
+                       {"files_written", facts.files_written}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
 
-  void print(const Mesh& fine, const RefineGridReport& report) const {
-    print_mesh_facts(fine);
+  void print(const Facts& facts) const {
+    const RefineGridReport& report = facts.report;
+    print_mesh_facts(facts.fine);
     if (!geometry_.empty())
       fmt::print(
           "moved          {} points to the surface, {} to features, by {:.4g} at most; {} halfway, {} put back\n",

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Picture of a tetrahedral grid: a cut through the volume coloured by quality, with the body's surface.
+"""Picture of a grid: a cut through the volume coloured by quality, with the body's surface; or all of a plane.
 
     picture.py GRID.vtu OUT.png [--normal 0,1,0] [--origin x,y,z] [--zoom x0,y0,z0,x1,y1,z1]
+    picture.py PLANE.vtu OUT.png [--by quality|region] [--zoom x0,y0,x1,y1]
+    picture.py SURFACE.stl OUT.png [--by quality|region] [--normal 0,1,0] [--zoom x0,y0,z0,x1,y1,z1]
 
 Cells whose centre lies on the side of the plane that the normal points to are kept and drawn whole ("crinkle cut"),
 coloured by their smallest dihedral angle; the viewer stands on the other side. Patches of the boundary that are small
@@ -22,6 +24,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import meshio  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.colors import LinearSegmentedColormap, to_rgb  # noqa: E402
+from picture_flat import FlatGrid, draw_plane, min_angles  # noqa: E402
 
 WIDTH, HEIGHT = 1600, 900
 LEFT, TOP_BAR, RIGHT_BAR, BOTTOM_BAR = 0, 76, 206, 44  # frame round the drawing, pixels
@@ -39,8 +42,7 @@ FAR_COLOUR = "#e4e3de"
 class Grid:
     """Points, positive tets, boundary triangles with patch numbers and names."""
 
-    def __init__(self, path):
-        mesh = meshio.read(path)
+    def __init__(self, mesh):
         self.points = np.asarray(mesh.points, dtype=float)
         tets, triangles, patches = [np.empty((0, 4), int)], [np.empty((0, 3), int)], [np.empty(0, int)]
         patch_data = mesh.cell_data.get("patch_id")
@@ -53,8 +55,6 @@ class Grid:
                 patches.append(ids.astype(int))
         self.tets = np.concatenate(tets).astype(int)
         self.triangles, self.patch = np.concatenate(triangles).astype(int), np.concatenate(patches)
-        if len(self.tets) == 0:
-            raise SystemExit(f"{path}: no tetrahedra to draw")
         # our VTU files: field data "patch:<name>" = [id, dimension]
         tables = {name: np.asarray(value).ravel() for name, value in mesh.field_data.items()}
         self.names = {int(v[0]): name[6:] for name, v in tables.items() if name.startswith("patch:") and v[1] == 2}
@@ -262,6 +262,47 @@ def draw_grid(grid, quality, options):
     return canvas.reduced(), legend
 
 
+def draw_surface(flat, options):
+    """All faces of a surface, from outside, by quality or by patch."""
+    triangles, angles, patches = [], [], []
+    for corners, ids in flat.faces:
+        parts = corners if corners.shape[1] == 3 else np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+        triangles.append(parts)
+        patches.append(np.resize(ids, len(parts)))
+        angles.append(min_angles(flat.points, parts))
+    triangles, patches, angles = np.concatenate(triangles), np.concatenate(patches), np.concatenate(angles)
+    normal = np.array(options.normal) / np.linalg.norm(options.normal)
+    up = np.array([0.0, 0.0, 1.0]) if abs(normal[2]) < 0.8 else np.array([0.0, 1.0, 0.0])
+    turn, lift = np.radians(options.turn), np.radians(options.lift)
+    forward = np.cos(lift) * (np.cos(turn) * normal + np.sin(turn) * np.cross(normal, up)) - np.sin(lift) * up
+    frame = flat.points[np.unique(triangles)]
+    if options.zoom:
+        box = np.array(options.zoom).reshape(2, 3)
+        frame = np.array([[box[i][0], box[j][1], box[k][2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    width, height = WIDTH * OVERSAMPLING, (HEIGHT - TOP_BAR - BOTTOM_BAR) * OVERSAMPLING
+    camera = Camera(frame, forward / np.linalg.norm(forward), up, width, height)
+    palette = np.array([to_rgb(c) for c in PATCH_COLOURS])
+    by_patch = palette[np.unique(patches, return_inverse=True)[1].ravel() % len(palette)]
+    colours = by_patch if options.by == "region" else QUALITY(np.clip(angles / 60, 0, 1))[:, :3]
+    canvas = Canvas(width, height)
+    shades = lit(colours, normals_of(flat.points, triangles), camera, 0.6)
+    canvas.draw(camera, flat.points, triangles, shades, 0.55 * OVERSAMPLING, 0.6)
+    figure = plt.figure(figsize=(WIDTH / 100, HEIGHT / 100), dpi=100, facecolor=PAPER)
+    axes = figure.add_axes([0, BOTTOM_BAR / HEIGHT, 1, 1 - (TOP_BAR + BOTTOM_BAR) / HEIGHT])
+    axes.imshow(np.clip(canvas.reduced(), 0, 1), interpolation="nearest", aspect="auto")
+    axes.set_axis_off()
+    title = options.title or os.path.basename(options.grid)
+    figure.text(24 / WIDTH, 1 - 24 / HEIGHT, title, color=INK, size=17, weight="bold", va="center")
+    facts = f"{grouped(len(triangles))} triangles     smallest angle {angles.min():.1f}\u00b0"
+    figure.text(24 / WIDTH, 1 - 55 / HEIGHT, facts, color=INK, size=11.5, va="center")
+    if options.by == "region":
+        add_legend(figure, [(flat.names[2].get(int(p), f"patch {p}"), PATCH_COLOURS[k % len(PATCH_COLOURS)],
+                             int((patches == p).sum())) for k, p in enumerate(np.unique(patches))])
+    figure.savefig(options.out, dpi=100, facecolor=PAPER)
+    plt.close(figure)
+    return len(triangles), angles.min()
+
+
 def grouped(number):
     return f"{number:,}".replace(",", "\u2009")
 
@@ -324,11 +365,12 @@ def add_legend(figure, legend):
         x += 22 + 7.3 * len(text) + 30
 
 
-def numbers(count):
+def numbers(*counts):
     def parse(text):
         values = [float(v) for v in text.split(",")]
-        if len(values) != count or not np.isfinite(values).all():
-            raise argparse.ArgumentTypeError(f"{count} numbers with commas between, got '{text}'")
+        if len(values) not in counts or not np.isfinite(values).all():
+            wanted = " or ".join(map(str, counts))
+            raise argparse.ArgumentTypeError(f"{wanted} numbers with commas between, got '{text}'")
         return values
 
     return parse
@@ -338,11 +380,12 @@ def parse_arguments(arguments):
     # argparse takes "-1,0,0" for an option; joined to its flag it is a value
     joined = re.sub(r"(?m)^(--(?:normal|origin|zoom))\n", r"\1=", "\n".join(arguments)).split("\n")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("grid", help="VTU or any other file of tetrahedra that meshio reads")
+    parser.add_argument("grid", help="VTU or any other file that meshio reads")
     parser.add_argument("out", help="PNG to write")
     parser.add_argument("--normal", type=numbers(3), default=[0, 1, 0], help="of the cut; cells behind it are kept")
     parser.add_argument("--origin", type=numbers(3), help="a point of the cut; default: the middle of the zoom box")
-    parser.add_argument("--zoom", type=numbers(6), help="box to look at; default: round the body")
+    parser.add_argument("--zoom", type=numbers(4, 6), help="box to look at; default: round the body")
+    parser.add_argument("--by", choices=["quality", "region"], default="quality", help="colours, without tetrahedra")
     parser.add_argument("--turn", type=float, default=-24, help="degrees to go round, seen from above")
     parser.add_argument("--lift", type=float, default=16, help="degrees to look down")
     parser.add_argument("--title", help="default: the file's name")
@@ -351,7 +394,21 @@ def parse_arguments(arguments):
 
 def main():
     options = parse_arguments(sys.argv[1:])
-    grid = Grid(options.grid)
+    mesh = meshio.read(options.grid)
+    is_volume = any(block.type == "tetra" for block in mesh.cells)
+    flat = None if is_volume else FlatGrid(mesh, options.grid)
+    corners = 4 if flat and flat.is_planar else 6
+    if options.zoom and len(options.zoom) != corners:
+        raise SystemExit(f"--zoom: {corners} numbers for this grid, got {len(options.zoom)}")
+    if flat and flat.is_planar:
+        worst = draw_plane(flat, options, QUALITY)
+        print(f"{options.out}: {flat.num_faces()} cells, smallest angle {worst:.2f} deg")
+        return
+    if flat:
+        count, worst = draw_surface(flat, options)
+        print(f"{options.out}: {count} triangles, smallest angle {worst:.2f} deg")
+        return
+    grid = Grid(mesh)
     quality = min_dihedrals(grid.points, grid.tets)
     image, legend = draw_grid(grid, quality, options)
     compose(image, legend, grid, quality, options)

@@ -55,6 +55,7 @@ struct FrontReport {
   std::size_t cavities_by_stars = 0;   ///< others of them, by cells to several points
   std::size_t cavities_left = 0;       ///< even then, closed by constrained Delaunay ...
   std::size_t closed_by_delaunay = 0;  ///< ... with so many cells
+  std::vector<Place> delaunay_places;  ///< volume: one in each of these cavities, widest first; at most kMaxPlaces
   double crossing_share = 0;           ///< of the time of steps, in crossing tests (F12)
   std::string gave_up;                 ///< why there is no front; refinement took its place
 };

@@ -85,7 +85,9 @@ struct PlanarDomain {
 /// @param h  length of the pieces, model units; 0: as the given points lie apart
 /// @return points of a chain, or of a loop without its first point again
 /// @throws InputError  too few points; two in a row are the same
-std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, double h);
+/// @throws LimitError  more pieces than fit, or a limit of the context; its number of cells before a piece is made
+std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, double h,
+                                  const Context& context = Context());
 
 /// @brief The whole run in the plane: a domain to a grid of triangles (2-D Mesh: segments are named groups of lines).
 ///

@@ -28,6 +28,10 @@ struct RefineGridReport {
   std::size_t halved = 0, reversed = 0;          ///< of all these: only halfway there; back in the middle
   std::vector<Place> reversed_places;            ///< of both; ids: the point. At most kMaxPlaces
   double largest_move = 0;                       ///< model units
+  std::size_t boundary_points = 0;               ///< new points that were looked for on the model …
+  std::size_t out_of_reach = 0;                  ///< … and have nothing of it within half the length of their edge
+  double farthest = 0;                           ///< distance of the model from one of those, among the farthest …
+  Point farthest_at;                             ///< … and that point
   std::vector<std::string> groups_not_in_model;  ///< boundary groups whose points stay in the middle for their name
 };
 
@@ -55,6 +59,10 @@ struct RefineGridReport {
 /// @par Threads  the same bytes for any number
 /// @par Cost  O(new cells); peak memory is that of both grids and 4 bytes an edge
 Mesh refine_grid(const Mesh& mesh, const RefineGridOptions& options, RefineGridReport& report, Context& context);
+
+/// @brief What of the model did not take effect, in sentences.
+/// @param geometry  what to call the model
+std::vector<std::string> warnings_of(const RefineGridReport& report, const std::string& geometry);
 
 /// @brief Cells of the highest dimension that so many levels make of a grid.
 std::size_t num_cells_after(const Mesh& mesh, int levels);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "delfront/context.hpp"
+#include "delfront/errors.hpp"
 #include "delfront/model.hpp"
 #include "delfront/point.hpp"
 #include "delfront/size_field.hpp"
@@ -93,6 +94,13 @@ class Expression {
 /// @throws UsageError  as Expression, but for unknown names in distance()
 std::vector<std::string> distances_in(std::string_view text, const std::map<std::string, double>& constants = {});
 
+/// @brief A bad value of one of the formulas of ExpressionSizes.
+struct ExpressionError : InputError {
+  ExpressionError(const std::string& part_at_fault, const std::string& message, std::vector<Place> where)
+      : InputError(message, std::move(where)), part(part_at_fault) {}
+  std::string part;  ///< "delta", "s1", "s2", "first", "second"
+};
+
 /// @brief Sizes by formulas (S2).
 struct ExpressionSizes {
   std::string delta;                                 ///< size, > 0; infinite where the formula has no opinion
@@ -106,9 +114,9 @@ struct ExpressionSizes {
 /// @brief A field that evaluates formulas. lower_bound() is DBL_MIN where no better one is proved.
 ///
 /// Before it returns it looks for bad values in the domain, by intervals and on a grid: finding none is no proof, and
-/// a bad value met later throws InputError from sizes() or metrics() with the place and the value.
+/// a bad value met later throws ExpressionError from sizes() or metrics() with the place and the value.
 /// @throws UsageError  a text that is no expression; s2 with first but without second
-/// @throws InputError  a value in the domain that is not positive: the place, the value and the expression
+/// @throws ExpressionError  a value in the domain that is not positive: the place, the value and the expression
 /// @par Source  Löhner (2008), 3.2.1, analytic functions
 std::unique_ptr<SizeField> build_expression_size_field(const ExpressionSizes& sizes, Context& context);
 

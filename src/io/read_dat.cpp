@@ -121,7 +121,8 @@ class DatReader {
     for (const Coordinate& p : points_)
       if (kept.empty() || !is_equal(kept.back(), p)) kept.push_back(p);
     const std::size_t repeated = points_.size() - kept.size();
-    if (kept.size() > 1 && is_equal(kept.front(), kept.back())) kept.pop_back();
+    is_closed_ = kept.size() > 1 && is_equal(kept.front(), kept.back());
+    if (is_closed_) kept.pop_back();
     if (repeated > 1)
       context_.warn(fmt::format("{}: {} points repeat the one before and are left out", cursor_.path(), repeated));
     points_.swap(kept);
@@ -148,7 +149,7 @@ class DatReader {
                                   cursor_.path(), cursor_.line_of(p.position), p.x, p.y));
     }
     const double gap = std::hypot(points_.front().x - points_.back().x, points_.front().y - points_.back().y);
-    if (gap > kWideTrailingEdge * (high - low))
+    if (!is_closed_ && gap > kWideTrailingEdge * (high - low))
       context_.warn(
           fmt::format("{}: the outline is open by {:g}; it is closed by a straight line", cursor_.path(), gap));
   }
@@ -158,6 +159,7 @@ class DatReader {
   Mesh mesh_;
   std::vector<Coordinate> points_;
   std::size_t num_upper_ = 0, num_lower_ = 0;  ///< 0: Selig's order
+  bool is_closed_ = false;                     ///< the element's last point is its first again
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ FieldPointer build_source_part(const Options& options, const Model& model, doubl
   return build_source_size_field(std::move(sources), {.growth = growth, .time = options.size.time}, context);
 }
 
-/// Texts of a formula have a place each; what is wrong with one is said with the place of the formula.
+/// What is wrong with one of the texts is said with its key and place.
 FieldPointer build_expression_part(const Options& options, const Model& model, const Box& domain, double growth,
                                    Context& context) {
   const ExpressionOptions& asked = options.size.expression;
@@ -53,28 +53,40 @@ FieldPointer build_expression_part(const Options& options, const Model& model, c
   const auto optional_texts = [](const std::array<std::string, 3>& texts) {
     return texts[0].empty() ? std::nullopt : std::optional<std::array<std::string, 3>>(texts);
   };
+  ExpressionSizes sizes;
+  const auto check = [&](const char* part, const std::string& text) {
+    if (text.empty()) return;
+    try {
+      for (const std::string& name : distances_in(text))
+        sizes.names.distances[name] = build_distance_field(named_part(model, name));
+      Expression(text, sizes.names);
+    } catch (const UsageError& e) {
+      throw usage_error(options, fmt::format("size.expression.{}", part), e.what());
+    } catch (const InputError& e) {  // the formula is at fault, not the input
+      throw usage_error(options, fmt::format("size.expression.{}", part), e.what());
+    }
+  };
+  check("delta", asked.delta);
+  check("s1", asked.s1);
+  check("s2", asked.s2);
+  for (const std::string& text : asked.first) check("first", text);
+  for (const std::string& text : asked.second) check("second", text);
   try {
-    ExpressionSizes sizes;
     sizes.delta = asked.delta;
     sizes.s1 = optional_text(asked.s1);
     sizes.s2 = optional_text(asked.s2);
     sizes.first = optional_texts(asked.first);
     sizes.second = optional_texts(asked.second);
     sizes.domain = domain;
-    std::vector<std::string> texts = {asked.delta, asked.s1, asked.s2};
-    texts.insert(texts.end(), asked.first.begin(), asked.first.end());
-    texts.insert(texts.end(), asked.second.begin(), asked.second.end());
-    for (const std::string& text : texts)
-      if (!text.empty())
-        for (const std::string& name : distances_in(text))
-          sizes.names.distances[name] = build_distance_field(named_part(model, name));
     // Clamped first: where a formula falls towards 0, growth need not be seen to below hmin.
     FieldPointer clamped =
         combine_size_fields({build_expression_size_field(sizes, context)}, hmin_of(options), hmax_of(options));
     return limit_growth(std::move(clamped), domain, growth, context);
-  } catch (const UsageError& e) {
-    throw usage_error(options, "size.expression.delta", e.what());
-  } catch (const InputError& e) {  // the formula is at fault, not the input
+  } catch (const ExpressionError& e) {
+    throw usage_error(options, "size.expression." + e.part, e.what());
+  } catch (const UsageError& e) {  // s2 along what?
+    throw usage_error(options, "size.expression.second", e.what());
+  } catch (const InputError& e) {
     throw usage_error(options, "size.expression.delta", e.what());
   }
 }

@@ -2,13 +2,13 @@
 #include "pipeline/levels.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "pipeline/size_survey.hpp"
+#include "planar/prepare.hpp"
 #include "sizing/asked_sizes.hpp"
 
 namespace delfront {
@@ -56,25 +56,6 @@ void CoarseLimit::end() {
   context_.limit_advice = limit_advice_;
 }
 
-namespace {
-
-std::vector<std::string> warnings_of(const RefineGridReport& report, const Options& options) {
-  std::vector<std::string> warnings;
-  if (!report.groups_not_in_model.empty())
-    warnings.push_back(fmt::format("{} has nothing called {}: new points there stay in the middle of their edges",
-                                   options.refine.geometry, fmt::join(report.groups_not_in_model, ", ")));
-  if (!report.reversed_places.empty()) {
-    const Point at = report.reversed_places[0].at;
-    warnings.push_back(
-        fmt::format("{} new points stand halfway between their edge and the geometry, {} on their edge, since cells "
-                    "would have been inverted or squashed; the first at ({:.9g}, {:.9g}, {:.9g})",
-                    report.halved, report.reversed, at.x, at.y, at.z));
-  }
-  return warnings;
-}
-
-}  // namespace
-
 void refine_levels(Outcome& outcome, const Options& options, const Model* geometry, Context& context) {
   if (options.refine.levels == 0) return;
   LevelsReport& report = outcome.report.levels;
@@ -90,7 +71,8 @@ void refine_levels(Outcome& outcome, const Options& options, const Model* geomet
     const double factor = field.name == "h" ? 1 / coarsening(options) : std::pow(coarsening(options), 2);
     for (double& value : field.values) value *= factor;
   }
-  for (std::string& warning : warnings_of(report.refined, options))
+  for (std::string& warning :
+       warnings_of(report.refined, options.refine.geometry.empty() ? "the geometry" : options.refine.geometry))
     outcome.report.warnings.push_back(std::move(warning));
   context.log(
       LogLevel::info,
@@ -103,16 +85,22 @@ void refine_levels(Outcome& outcome, const Options& options, const Model* geomet
 
 Outcome generate_planar_in_levels(const PlanarDomain& domain, const Options& options, Context& context,
                                   std::shared_ptr<const SizeField> asked, const Model* geometry) {
-  if (options.refine.levels == 0) return generate_planar(domain, options, context, std::move(asked));
+  check_floating_point_mode();
   Box box;
   for (const Point2 p : domain.points) box.add(Point{p.x, p.y, 0});
   Options coarse = coarse_options(options);
   coarse.output.sizes = options.output.sizes;
+  asked = coarse_sizes(std::move(asked), options, box, context);
   Outcome outcome;
   {
-    const CoarseLimit limit(context, options, true);
-    outcome = generate_planar(domain, coarse, context, coarse_sizes(std::move(asked), options, box, context));
+    CoarseLimit limit(context, options, true);
+    PlanarPrepared prepared = prepare_planar(domain, coarse, asked, context);
+    limit.end();
+    refuse_too_many_cells(prepared, coarse.size, options.refine.levels, context);
+    const CoarseLimit again(context, options, true);
+    outcome = fill_planar(std::move(prepared), domain, coarse, context);
   }
+  if (options.refine.levels == 0) return outcome;
   refine_levels(outcome, options, geometry, context);
   const StageTimer timer(context, "measure");
   outcome.report.quality = measure_quality(outcome.mesh, context);

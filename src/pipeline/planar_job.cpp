@@ -14,6 +14,7 @@
 #include "pipeline/option_table.hpp"
 #include "pipeline/quantities.hpp"
 #include "planar/far_field.hpp"
+#include "planar/pieces.hpp"
 #include "sizing/asked_sizes.hpp"
 
 namespace delfront {
@@ -41,30 +42,36 @@ CurveId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, PlanarD
 }
 
 /// Straight pieces, divided evenly where a length is given.
-std::vector<Point2> divide_line(const std::vector<Point2>& through, bool closed, double h) {
+std::vector<Point2> divide_line(const std::vector<Point2>& through, bool closed, double h, const Context& context) {
+  check_curve_points(through, closed);
   std::vector<Point2> points;
   const std::size_t pieces = through.size() - (closed ? 0 : 1);
   for (std::size_t i = 0; i < pieces; ++i) {
     const Point2 a = through[i], b = through[(i + 1) % through.size()];
-    const double parts = h > 0 ? std::max(1.0, std::round(std::hypot(b.x - a.x, b.y - a.y) / h)) : 1;
-    for (double k = 0; k < parts; ++k) points.push_back({a.x + k / parts * (b.x - a.x), a.y + k / parts * (b.y - a.y)});
+    const std::size_t parts = h > 0 ? number_of_pieces(std::hypot(b.x - a.x, b.y - a.y) / h, context) : 1;
+    for (std::size_t k = 0; k < parts; ++k) {
+      if (k % kPiecesPerLimitCheck == kPiecesPerLimitCheck - 1) context.check_limits();
+      const double t = static_cast<double>(k) / static_cast<double>(parts);
+      points.push_back({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)});
+    }
   }
   if (!closed) points.push_back(through.back());
   return points;
 }
 
-Mesh mesh_of_curve(const PlanarCurveOptions& curve, const LengthScale& scale) {
+Mesh mesh_of_curve(const PlanarCurveOptions& curve, const LengthScale& scale, const Context& context) {
   std::vector<Point2> through;
   for (const Point& p : curve.at) {
     if (p.z != 0) throw UsageError("at: a curve lies in the plane z = 0");
     through.push_back({p.x, p.y});
   }
   const double h = curve.h ? resolve_length(*curve.h, scale) : 0;
-  std::vector<Point2> points = sample_spline(through, curve.closed, h);
-  if (curve.type == "line") points = divide_line(through, curve.closed, h);
+  const std::vector<Point2> points = curve.type == "line" ? divide_line(through, curve.closed, h, context)
+                                                          : sample_spline(through, curve.closed, h, context);
   Mesh mesh;
   mesh.dimension = 2;
   for (const Point2 p : points) mesh.points.push_back({p.x, p.y, 0});
+  context.check_limits();
   CellBlock& lines = mesh.block(CellType::line);
   const std::size_t pieces = points.size() - (curve.closed ? 0 : 1);
   for (std::size_t i = 0; i < pieces; ++i) {
@@ -106,7 +113,7 @@ CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& sc
   return far_field;
 }
 
-std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs) {
+std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs, const Context& all) {
   Box box;
   for (const NamedMesh& input : inputs)
     for (const Point& p : input.mesh.points) box.add(p);
@@ -116,9 +123,14 @@ std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<N
   std::vector<NamedMesh> result;
   for (std::size_t i = 0; i < options.planar.curves.size(); ++i) {
     const PlanarCurveOptions& curve = options.planar.curves[i];
+    Context context = all;
+    context.limit_advice = fmt::format("give planar.curve[{}] a larger h", i);
     try {
-      result.push_back({mesh_of_curve(curve, scale), curve.name.empty() ? fmt::format("curve_{}", i + 1) : curve.name});
-    } catch (const Error& e) {
+      result.push_back(
+          {mesh_of_curve(curve, scale, context), curve.name.empty() ? fmt::format("curve_{}", i + 1) : curve.name});
+    } catch (const UsageError& e) {
+      throw usage_error(options, fmt::format("planar.curve[{}]", i), e.what());
+    } catch (const InputError& e) {
       throw usage_error(options, fmt::format("planar.curve[{}]", i), e.what());
     }
   }
@@ -151,7 +163,9 @@ Model true_lines(Options options, std::vector<NamedMesh> inputs, const LengthSca
   if (has_circle)
     options.domain.enclose.h = Length{2 * std::numbers::pi / kPiecesOfCircle * options.domain.enclose.size.value, ""};
   inputs.resize(options.input.files.size());
-  std::vector<NamedMesh> curves = curves_of_job(options, inputs);
+  Context unlimited = context;  // these pieces are no cells
+  unlimited.max_cells = 0;
+  std::vector<NamedMesh> curves = curves_of_job(options, inputs, unlimited);
   std::move(curves.begin(), curves.end(), std::back_inserter(inputs));
   PlanarDomain domain = build_planar_domain(inputs, context);
   set_curves(domain, options, scale, context);

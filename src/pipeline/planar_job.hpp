@@ -19,7 +19,9 @@ void check_planar_outputs(const Options& options);
 /// @brief The curves of [[planar.curve]] as meshes of lines, to stand beside those of the files.
 /// @param inputs  what the files hold: lengths in % and c are of the box of all
 /// @throws UsageError  a curve that cannot be, with the place of its entry
-std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs);
+/// @throws LimitError  a length of pieces that makes too many
+std::vector<NamedMesh> curves_of_job(const Options& options, const std::vector<NamedMesh>& inputs,
+                                     const Context& context);
 
 /// @brief generate_planar, knowing the far field by its kind whatever kind the job gives it in the grid.
 Outcome generate_in_far_field(const PlanarDomain& domain, CurveId far_field, const Options& options,

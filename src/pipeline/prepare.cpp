@@ -50,8 +50,9 @@ void regrid(Model& model, const Options& options, const std::shared_ptr<const Si
   refuse_invalid(report.surface);
 }
 
-BoundaryGrid recover(Model& model, const Options& options, Report& report, Context& context) {
-  return tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context);
+BoundaryGrid recover(Model& model, const Options& options, Report& report, Context& context,
+                     const RecoveryEffort& effort = {}) {
+  return tetrahedralize_boundary(model, options.domain, far_field_patches(model), report.recovery, context, effort);
 }
 
 /// A new surface that cannot be recovered gives way to the given one, which most often can.
@@ -59,9 +60,10 @@ BoundaryGrid regrid_and_recover(Model& model, const Options& options, const std:
                                 Report& report, Context& context) {
   const Model given = model;
   const SurfaceReport of_given = report.surface;
+  constexpr int kMostRounds = 10;  ///< slender rods would take minutes, and there is a way out
   try {
     regrid(model, options, asked, report, context);
-    return recover(model, options, report, context);
+    return recover(model, options, report, context, {.most_rounds = kMostRounds});
   } catch (const MeshingError& e) {
     const Point at = e.places.empty() ? Point{} : e.places[0].at;
     context.warn(fmt::format("the new surface cannot be filled, the given triangles are kept: {}", e.what()));

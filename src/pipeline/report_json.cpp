@@ -131,6 +131,7 @@ Json to_json(const FrontReport& r) {
           {"cavities_by_stars", r.cavities_by_stars},
           {"cavities_left", r.cavities_left},
           {"closed_by_delaunay", r.closed_by_delaunay},
+          {"delaunay_places", to_json(r.delaunay_places, kMaxPlaces)},
           {"crossing_share", number(r.crossing_share)},
           {"gave_up", r.gave_up}};
 }
@@ -157,6 +158,8 @@ Json to_json(const LevelsReport& r) {
           {"points_on_surface", r.refined.points_on_surface},
           {"points_on_features", r.refined.points_on_features},
           {"largest_move", number(r.refined.largest_move)},
+          {"boundary_points", r.refined.boundary_points},
+          {"out_of_reach", r.refined.out_of_reach},
           {"halved", r.refined.halved},
           {"reversed", r.refined.reversed},
           {"reversed_places", to_json(r.refined.reversed_places, kMaxPlaces)},

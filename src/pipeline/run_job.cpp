@@ -94,7 +94,7 @@ void read_inputs(Run& run) {
     say_what_is_unused(run.inputs.back().mesh, files[i], run.context);
     run.result.inputs.push_back(std::move(file));
   }
-  std::vector<NamedMesh> curves = curves_of_job(coarse_options(run.options), run.inputs);
+  std::vector<NamedMesh> curves = curves_of_job(coarse_options(run.options), run.inputs, run.context);
   std::move(curves.begin(), curves.end(), std::back_inserter(run.inputs));
   run.context.progress("read", files.size(), files.size(), "files");
 }

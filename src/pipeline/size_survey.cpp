@@ -183,6 +183,22 @@ void refuse_tiny_hmax(double volume, const Options& options, const Context& cont
       context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
 }
 
+namespace {
+
+/// @param limit  of the coarse grid
+void refuse_over(std::uint64_t limit, Estimate estimate, bool is_planar, int levels, const Context& context) {
+  if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
+  refine_estimate(estimate, is_planar, levels);
+  const std::uint64_t children = std::uint64_t{1} << ((is_planar ? 2 : 3) * levels);
+  throw LimitError(fmt::format(
+      "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, over the limit of {}{}; ask for "
+      "larger sizes (--hmax, --growth, or a larger --hmin that bounds all), or see `delfront estimate`",
+      estimate.least_size, estimate.cells, context.max_cells > 0 ? context.max_cells : limit * children,
+      context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
+}
+
+}  // namespace
+
 void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, int levels, Context& context) {
   const std::uint64_t children = std::uint64_t{1} << (3 * levels);
   const std::uint64_t limit = context.max_cells > 0 ? context.max_cells / children : TetComplex::kMaxSlots;
@@ -191,14 +207,20 @@ void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options,
   for (VertexIndex v = 0; v < c.num_vertices(); ++v)
     if (c.vertex_tet[v] != kNoIndex) box.add(c.point(v));
   if (most_cells(box, prepared.size->lower_bound(box), false) < static_cast<double>(limit)) return;
-  Estimate estimate = estimate_grid(KeptDomain(prepared), *prepared.size, growth_of(options), context, kFewLeaves);
-  if (estimate.cells < kSurelyOver * static_cast<double>(limit)) return;
-  refine_estimate(estimate, false, levels);
-  throw LimitError(fmt::format(
-      "stopped before gridding: sizes from {:.3g} ask for about {:.1e} cells, over the limit of {}{}; ask for "
-      "larger sizes (--hmax, --growth, or a larger --hmin that bounds all), or see `delfront estimate`",
-      estimate.least_size, estimate.cells, context.max_cells > 0 ? context.max_cells : limit * children,
-      context.max_cells > 0 ? " (--max-cells)" : ", which is what this version can hold"));
+  const KeptDomain domain(prepared);
+  refuse_over(limit, estimate_grid(domain, *prepared.size, growth_of(options), context, kFewLeaves), false, levels,
+              context);
+}
+
+void refuse_too_many_cells(const PlanarPrepared& prepared, const SizeOptions& options, int levels, Context& context) {
+  if (context.max_cells == 0 || prepared.is_kept_too_long || !prepared.size->is_isotropic()) return;
+  const std::uint64_t limit = context.max_cells >> (2 * levels);
+  Box box;
+  for (const Point2 p : prepared.grid.complex.point) box.add(Point{p.x, p.y, 0});
+  if (most_cells(box, prepared.size->lower_bound(box), true) < static_cast<double>(limit)) return;
+  const KeptDomain domain(prepared);
+  refuse_over(limit, estimate_grid(domain, *prepared.size, growth_of(options), context, kFewLeaves), true, levels,
+              context);
 }
 
 Mesh size_mesh(const KeptDomain& domain, const SizeField& size, double growth, Context& context) {

@@ -32,6 +32,8 @@ void refine_estimate(Estimate& estimate, bool is_planar, int levels);
 /// @param prepared, options  of the coarse grid where there are levels
 /// @throws LimitError
 void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, int levels, Context& context);
+/// In the plane, where there is a limit of cells, and the boundary is as fine as the sizes.
+void refuse_too_many_cells(const PlanarPrepared& prepared, const SizeOptions& options, int levels, Context& context);
 
 /// @return the growth that the size field of a job keeps
 double growth_of(const SizeOptions& options);

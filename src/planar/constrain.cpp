@@ -144,14 +144,19 @@ void insert_segments(const PlanarDomain& domain, const std::vector<VertexIndex>&
                      Context& context) {
   SegmentInserter inserter(grid);
   grid.complex.index_vertices();
-  std::size_t num_points = 0;
+  std::vector<std::size_t> without_length;
   for (std::size_t i = 0; i < domain.segments.size(); ++i) {
     if (i % kSegmentsPerCancelCheck == 0) context.progress("recover", i, domain.segments.size(), "segments");
     const VertexIndex a = same_as[domain.segments[i][0].index()], b = same_as[domain.segments[i][1].index()];
-    num_points += a == b;
+    if (a == b) without_length.push_back(i);
     inserter.insert(a, b, domain.curve_of_segment[i].value);
   }
-  if (num_points > 0) grid.warnings.push_back(fmt::format("{} segments of no length were left out", num_points));
+  if (!without_length.empty()) {
+    const std::size_t first = without_length[0];
+    const Point2 p = domain.points[domain.segments[first][0]];
+    grid.warnings.push_back(fmt::format("{} segments of no length were left out, the first at ({:.9g}, {:.9g})",
+                                        without_length.size(), p.x, p.y));
+  }
   if (inserter.num_overlaps > 0)
     grid.warnings.push_back(fmt::format("{} segments lie on others; the first given stays", inserter.num_overlaps));
   if (inserter.crossings.empty()) return;

@@ -16,6 +16,8 @@ namespace delfront {
 
 namespace {
 
+constexpr std::size_t kLinesPerLimitCheck = std::size_t{1} << 16;
+
 class DomainBuilder {
  public:
   PlanarDomain run(const std::vector<NamedMesh>& inputs, Context& context) {
@@ -25,7 +27,7 @@ class DomainBuilder {
       curve_of_group_.assign(input.mesh.groups.size() + 1, CurveId());
       vertex_.assign(input.mesh.points.size(), VertexId());
       add_seeds(input.mesh);
-      add_lines(input);
+      add_lines(input, context);
       add_free_points(input.mesh);
     }
     if (domain_.segments.empty()) throw InputError("no lines in the input: nothing bounds a part of the plane");
@@ -87,9 +89,10 @@ class DomainBuilder {
     }
   }
 
-  void add_lines(const NamedMesh& input) {
+  void add_lines(const NamedMesh& input, const Context& context) {
     const CellBlock* lines = input.mesh.find_block(CellType::line);
     for (std::size_t i = 0; lines && i < lines->size(); ++i) {
+      if (i % kLinesPerLimitCheck == 0) context.check_limits();
       const GroupId group = lines->group.empty() ? GroupId() : lines->group[i];
       domain_.segments.push_back({add_point(input.mesh, (*lines)[i][0]), add_point(input.mesh, (*lines)[i][1])});
       domain_.curve_of_segment.push_back(curve_of(input, group));

@@ -117,7 +117,8 @@ void set_vertex_sizes(TriComplex& complex, const SizeField& field, const Context
 }
 
 /// A boundary that is kept has its points and no others, whatever sizes are asked for.
-void warn_of_long_segments(PlanarGrid& grid, const SizeOptions& options, const SizeField* asked,
+/// @return whether there are such segments
+bool warn_of_long_segments(PlanarGrid& grid, const SizeOptions& options, const SizeField* asked,
                            const Context& context) {
   std::vector<std::array<Point, 2>> segments;
   for (const PlanarPiece& piece : grid.pieces) {
@@ -131,11 +132,29 @@ void warn_of_long_segments(PlanarGrid& grid, const SizeOptions& options, const S
                     "worst {:g} where {:g} is asked for (at {:g} {:g}): the boundary is kept as "
                     "given; --boundary split divides it",
                     found.count, found.length, found.size, found.at.x, found.at.y));
+  return found.count > 0;
 }
 
 /// Only the front makes stretched triangles; the other methods use the least size over all directions.
 bool is_stretched(const Options& options, const SizeField& size) {
   return options.planar.method == "front" && !size.is_isotropic();
+}
+
+/// Points that circles ask for make short pieces, which lower the sizes beside them: then their neighbours are too
+/// long. Circles are looked at in the first rounds only: at sharp corners they and the sizes could lower each other for
+/// ever.
+void split_boundary(PlanarPrepared& prepared, const Options& options, double largest,
+                    const std::shared_ptr<const SizeField>& asked, Context& context) {
+  constexpr int kMostRounds = 200, kRoundsOfCircles = 2;
+  const bool in_metric = is_stretched(options, *prepared.size);
+  for (int round = 0; round < kMostRounds; ++round) {
+    // circles say nothing of stretched triangles
+    const bool by_circles = !in_metric && round < kRoundsOfCircles;
+    const std::size_t count = split_segments(prepared.grid, *prepared.size, in_metric, by_circles, context);
+    // Short pieces across the direction of long triangles must not bound sizes along it.
+    if (in_metric || (round >= kRoundsOfCircles && count == 0)) return;
+    prepared.size = build_size_field(prepared.grid, options.size, largest, asked, context);
+  }
 }
 
 PointPlacement placement_of(const std::string& method) {
@@ -203,13 +222,9 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
   grid = triangulate(domain, options.domain, context);
   const double largest = largest_size(measure_boundary(grid));
   prepared.size = build_size_field(grid, options.size, largest, asked, context);
-  if (options.planar.boundary == "split") {
-    const bool in_metric = is_stretched(options, *prepared.size);
-    split_segments(grid, *prepared.size, in_metric, context);
-    // Short pieces across the direction of long triangles must not bound sizes along it.
-    if (!in_metric) prepared.size = build_size_field(grid, options.size, largest, asked, context);
-  }
-  if (options.planar.boundary == "keep") warn_of_long_segments(grid, options.size, asked.get(), context);
+  if (options.planar.boundary == "split") split_boundary(prepared, options, largest, asked, context);
+  if (options.planar.boundary == "keep")
+    prepared.is_kept_too_long = warn_of_long_segments(grid, options.size, asked.get(), context);
   set_vertex_sizes(grid.complex, *prepared.size, context);
   return prepared;
 }
@@ -217,9 +232,14 @@ PlanarPrepared prepare_planar(const PlanarDomain& domain, const Options& options
 Outcome generate_planar(const PlanarDomain& domain, const Options& options, Context& context,
                         std::shared_ptr<const SizeField> asked) {
   check_floating_point_mode();
+  return fill_planar(prepare_planar(domain, options, asked, context), domain, options, context);
+}
+
+Outcome fill_planar(PlanarPrepared prepared, const PlanarDomain& domain, const Options& options, Context& context) {
   Outcome outcome;
   Report& report = outcome.report;
-  auto [grid, size] = prepare_planar(domain, options, asked, context);
+  PlanarGrid& grid = prepared.grid;
+  const std::shared_ptr<const SizeField>& size = prepared.size;
   if (options.planar.method == "front")
     report.front = fill_by_front(grid, *size, context);
   else

@@ -3,9 +3,11 @@
 // points: one tridiagonal system, closed to a ring by the formula of Sherman and Morrison.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "planar/pieces.hpp"
 #include "planar/tri_complex.hpp"
 
 namespace delfront {
@@ -101,7 +103,19 @@ class Spline {
   std::vector<Point2> bend_;   ///< by point: second derivative
 };
 
-void check_points(std::span<const Point2> through, bool closed) {
+}  // namespace
+
+std::size_t number_of_pieces(double wanted, const Context& context) {
+  if (!(wanted < static_cast<double>(kMostTriangles)))
+    throw LimitError(
+        fmt::format("stopped: a line would be divided into {:.1e} pieces, more than the {:.1e} that fit; {}", wanted,
+                    static_cast<double>(kMostTriangles), context.limit_advice));
+  const auto pieces = static_cast<std::size_t>(std::fmax(1, std::round(wanted)));
+  context.check_cells(pieces / 3);  // no triangle has more sides
+  return pieces;
+}
+
+void check_curve_points(std::span<const Point2> through, bool closed) {
   const std::size_t least = closed ? 3 : 2;
   if (through.size() < least)
     throw InputError(fmt::format("{} curve goes through at least {} points, got {}", closed ? "a closed" : "an open",
@@ -116,10 +130,8 @@ void check_points(std::span<const Point2> through, bool closed) {
   }
 }
 
-}  // namespace
-
-std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, double h) {
-  check_points(through, closed);
+std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, double h, const Context& context) {
+  check_curve_points(through, closed);
   const Spline spline(through, closed);
   // Pieces a unit of t: by size, or where the curve turns by its curvature.
   const auto pieces_at = [&](std::size_t i, double t) {
@@ -133,10 +145,10 @@ std::vector<Point2> sample_spline(std::span<const Point2> through, bool closed, 
   for (std::size_t i = 0; i < spline.num_spans(); ++i)
     for (std::size_t k = 0; k < kStepsASpan; ++k)
       sum.push_back(sum.back() + pieces_at(i, (static_cast<double>(k) + 0.5) / kStepsASpan) / kStepsASpan);
-  const double least = closed ? 3 : 1;
-  const auto pieces = static_cast<std::size_t>(std::fmax(least, std::round(sum.back())));
+  const std::size_t pieces = std::max<std::size_t>(number_of_pieces(sum.back(), context), closed ? 3 : 1);
   std::vector<Point2> result(1, through[0]);
   for (std::size_t piece = 1, k = 1; piece < pieces; ++piece) {
+    if (piece % kPiecesPerLimitCheck == 0) context.check_limits();
     const double wanted = sum.back() * static_cast<double>(piece) / static_cast<double>(pieces);
     while (sum[k] < wanted) ++k;
     const double t = static_cast<double>(k - 1) + (wanted - sum[k - 1]) / (sum[k] - sum[k - 1]);

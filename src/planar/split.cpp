@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "planar/edit.hpp"
+#include "planar/pieces.hpp"
 
 namespace delfront {
 
 namespace {
 
-constexpr std::size_t kSamples = 33;  ///< of the size along a piece, odd
+constexpr std::size_t kSamples = 33;              ///< of the size along a piece, odd
+constexpr double kLongest = std::numbers::sqrt2;  ///< of the size
 constexpr double kShortest = 0.1;     ///< of the size: no piece is halved below that, whoever stands in its circle
 constexpr double kAcuteCosine = 0.5;  ///< 60 degrees
 constexpr std::size_t kPiecesPerCancelCheck = 256;
@@ -21,9 +24,9 @@ class Splitting {
   Splitting(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context)
       : grid_(grid), c_(grid.complex), size_(size), in_metric_(in_metric), context_(context) {}
 
-  std::size_t run() {
+  std::size_t run(bool by_circles) {
     split_by_size();
-    if (in_metric_) return count_;  // circles say nothing of stretched triangles
+    if (!by_circles) return count_;
     find_acute_corners();
     split_encroached();
     return count_;
@@ -53,10 +56,11 @@ class Splitting {
     const double step = std::sqrt(squared_length(along)) / (kSamples - 1);
     sum[0] = 0;
     for (std::size_t k = 1; k < kSamples; ++k) sum[k] = sum[k - 1] + 0.5 * step * (1 / sizes[k - 1] + 1 / sizes[k]);
-    const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(sum.back())));
-    context_.check_cells(parts);  // each has a triangle of its own
+    std::size_t parts = number_of_pieces(sum.back(), context_);
+    if (sum.back() > kLongest * static_cast<double>(parts)) ++parts;
     std::vector<double> result;
     for (std::size_t part = 1, k = 1; part < parts; ++part) {
+      if (part % kPiecesPerLimitCheck == 0) context_.check_limits();
       const double wanted = sum.back() * static_cast<double>(part) / static_cast<double>(parts);
       while (sum[k] < wanted) ++k;
       const double share = (wanted - sum[k - 1]) / (sum[k] - sum[k - 1]);
@@ -193,9 +197,9 @@ class Splitting {
 
 }  // namespace
 
-std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, Context& context) {
+std::size_t split_segments(PlanarGrid& grid, const SizeField& size, bool in_metric, bool by_circles, Context& context) {
   const StageTimer timer(context, "split");
-  return Splitting(grid, size, in_metric, context).run();
+  return Splitting(grid, size, in_metric, context).run(by_circles);
 }
 
 }  // namespace delfront

@@ -43,7 +43,7 @@ class MovedPointFinder {
         faces_(coarse, coarse.dimension == 2 ? -1 : 2),
         lines_(coarse, 1) {}
 
-  std::vector<MovedPoint> run(int threads) {
+  BoundaryPlaces run(int threads) {
     collect_faces();
     collect_lines();
     std::sort(holders_.begin(), holders_.end(), [](const Holder& a, const Holder& b) {
@@ -54,18 +54,26 @@ class MovedPointFinder {
       if (i == 0 || holders_[i].point != holders_[i - 1].point) firsts.push_back(i);
     const std::size_t num_points = firsts.size();
     firsts.push_back(holders_.size());
-    std::vector<std::optional<MovedPoint>> found(num_points);
+    std::vector<Found> found(num_points);
     parallel_ranges(threads, num_points, kGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
         found[i] = place(std::span(holders_).subspan(firsts[i], firsts[i + 1] - firsts[i]));
     });
-    std::vector<MovedPoint> moved;
-    for (const std::optional<MovedPoint>& m : found)
-      if (m) moved.push_back(*m);
-    return moved;
+    BoundaryPlaces places;
+    for (std::size_t i = 0; i < num_points; ++i) {
+      if (found[i].moved) places.moved.push_back(*found[i].moved);
+      if (found[i].is_looked_at) ++places.num_looked_at;
+      if (found[i].is_out_of_reach) places.out_of_reach.push_back(holders_[firsts[i]].point);
+    }
+    return places;
   }
 
  private:
+  struct Found {
+    bool is_looked_at = false, is_out_of_reach = false;
+    std::optional<MovedPoint> moved;
+  };
+
   void collect_faces() {
     for (const CellRange::Part& part : faces_.parts()) {
       const ChildTable& table = child_table(part.block->type);
@@ -114,20 +122,21 @@ class MovedPointFinder {
         cross(mesh_.points[v[last - 1]] - mesh_.points[v[0]], mesh_.points[v[last]] - mesh_.points[v[last - 2]]));
   }
 
-  std::optional<MovedPoint> place(std::span<const Holder> holders) const {
+  Found place(std::span<const Holder> holders) const {
     const Point a = mesh_.points[VertexId(holders[0].from)], b = mesh_.points[VertexId(holders[0].to)];
     const Point middle = points_[VertexId(holders[0].point)];
     const double edge = distance(a, b), reach = kReach * edge;
-    const auto moved_to = [&](const TrueGeometry::Hit& hit, bool on_feature) -> std::optional<MovedPoint> {
-      if (hit.distance <= kAlreadyThere * edge) return {};
-      return MovedPoint{holders[0].point, middle, hit.at, on_feature};
+    const auto moved_to = [&](const TrueGeometry::Hit& hit, bool on_feature) -> Found {
+      if (!hit.found()) return {true, !geometry_.nearest(middle, reach).found(), {}};
+      if (hit.distance <= kAlreadyThere * edge) return {true, false, {}};
+      return {true, false, MovedPoint{holders[0].point, middle, hit.at, on_feature}};
     };
     if (may_be_feature(holders) && has_ends_on_features(a, b, kOnFeature * edge)) {
       const Holder& last = holders.back();
       const GroupId curve = last.is_line ? group_of(lines_, last.cell) : GroupId();
       if (mesh_.dimension == 2 && !geometry_.is_known(curve)) return {};
       const TrueGeometry::Hit hit = geometry_.nearest_on_features(middle, unit(b - a), curve, reach);
-      if (hit.found()) return moved_to(hit, true);
+      if (hit.found() || mesh_.dimension == 2) return moved_to(hit, true);
     }
     if (holders[0].is_line || (holders.size() != 2 && !holders[0].is_centre && !holders.back().is_line)) return {};
     std::vector<GroupId> groups;
@@ -139,8 +148,7 @@ class MovedPointFinder {
       const Point n = normal_of(h.cell);
       normal = normal + (groups.size() == 2 && h.is_forward == holders[0].is_forward ? -1 : 1) * n;
     }
-    const TrueGeometry::Hit hit = geometry_.nearest_on_surface(middle, unit(normal), groups, reach);
-    return hit.found() ? moved_to(hit, false) : std::nullopt;
+    return moved_to(geometry_.nearest_on_surface(middle, unit(normal), groups, reach), false);
   }
 
   /// The middle of an edge between two faces of one group that lie nearly in a plane is not.
@@ -174,9 +182,8 @@ class MovedPointFinder {
 
 }  // namespace
 
-std::vector<MovedPoint> find_moved_points(const Mesh& coarse, const MidPoints& mids,
-                                          const Array<VertexId, Point>& points, const TrueGeometry& geometry,
-                                          int threads) {
+BoundaryPlaces find_boundary_places(const Mesh& coarse, const MidPoints& mids, const Array<VertexId, Point>& points,
+                                    const TrueGeometry& geometry, int threads) {
   return MovedPointFinder(coarse, mids, points, geometry).run(threads);
 }
 

@@ -19,12 +19,17 @@ struct MovedPoint {
   Point place() const { return halves == 2 ? target : middle + (0.5 * halves) * (target - middle); }
 };
 
-/// @brief Where the new points of boundary faces (in the plane: lines) and of curves belong, in ascending order; those
-/// that are there already are left out.
+/// @brief What became of the new points of the boundary.
+struct BoundaryPlaces {
+  std::vector<MovedPoint> moved;            ///< ascending; those that are there already are left out
+  std::size_t num_looked_at = 0;            ///< whose group the geometry may have
+  std::vector<std::uint32_t> out_of_reach;  ///< of these, ascending: nothing of the geometry within half of their edge
+};
+
+/// @brief Where the new points of boundary faces (in the plane: lines) and of curves belong.
 /// @param points  of the finer grid: the new ones in the middle
-std::vector<MovedPoint> find_moved_points(const Mesh& coarse, const MidPoints& mids,
-                                          const Array<VertexId, Point>& points, const TrueGeometry& geometry,
-                                          int threads);
+BoundaryPlaces find_boundary_places(const Mesh& coarse, const MidPoints& mids, const Array<VertexId, Point>& points,
+                                    const TrueGeometry& geometry, int threads);
 
 /// @brief Entities of the finer grid's vertices: those of old points stay; new points get that of the cell, face or
 /// line of the lowest dimension that they lie in, as its other vertices tell.

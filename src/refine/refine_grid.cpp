@@ -2,6 +2,7 @@
 #include "delfront/refine_grid.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
@@ -132,8 +133,25 @@ class Level {
     if (!geometry_) return;
     const StageTimer timer(context_, "refine: geometry");
     context_.check_limits();
-    moved_ = find_moved_points(coarse_, *mids_, fine_.points, *geometry_, context_.threads);
+    BoundaryPlaces places = find_boundary_places(coarse_, *mids_, fine_.points, *geometry_, context_.threads);
+    report_.boundary_points += places.num_looked_at;
+    report_.out_of_reach += places.out_of_reach.size();
+    find_farthest(places.out_of_reach);
+    moved_ = std::move(places.moved);
     for (const MovedPoint& m : moved_) fine_.points[VertexId(m.point)] = m.target;
+  }
+
+  /// The farthest of some of them, evenly spread: to look from far away costs more than from near by.
+  void find_farthest(const std::vector<std::uint32_t>& out_of_reach) {
+    constexpr std::size_t kMostLooks = 200;
+    const std::size_t step = out_of_reach.size() / kMostLooks + 1;
+    for (std::size_t i = 0; i < out_of_reach.size(); i += step) {
+      const Point p = fine_.points[VertexId(out_of_reach[i])];
+      const double d = geometry_->nearest(p, std::numeric_limits<double>::infinity()).distance;
+      if (!(d > report_.farthest)) continue;
+      report_.farthest = d;
+      report_.farthest_at = p;
+    }
   }
 
   void count_moved() {
@@ -203,6 +221,33 @@ Mesh refine_grid(const Mesh& mesh, const RefineGridOptions& options, RefineGridR
   report.num_points = fine.points.size();
   report.num_cells = fine.num_cells_of_dimension(fine.top_dimension());
   return fine;
+}
+
+std::vector<std::string> warnings_of(const RefineGridReport& report, const std::string& geometry) {
+  std::vector<std::string> warnings;
+  if (!report.groups_not_in_model.empty())
+    warnings.push_back(fmt::format("{} has nothing called {}: new points there stay in the middle of their edges",
+                                   geometry, fmt::join(report.groups_not_in_model, ", ")));
+  if (report.out_of_reach > 0) {
+    const Point at = report.farthest_at;
+    const std::string count = report.out_of_reach == report.boundary_points
+                                  ? fmt::format("none of the {}", report.boundary_points)
+                                  : fmt::format("{} of the {}", report.out_of_reach, report.boundary_points);
+    warnings.push_back(fmt::format(
+        "{} new boundary points {} half an edge's length {} {}, e.g. ({:.9g}, {:.9g}, {:.9g}), from which "
+        "it is {:.4g} away; they stay in the middle of their edges: does it lie elsewhere, or in other "
+        "units?",
+        count, report.out_of_reach == report.boundary_points ? "is within" : "are farther than",
+        report.out_of_reach == report.boundary_points ? "of" : "from", geometry, at.x, at.y, at.z, report.farthest));
+  }
+  if (!report.reversed_places.empty()) {
+    const Point at = report.reversed_places[0].at;
+    warnings.push_back(
+        fmt::format("{} new points stand halfway between their edge and {}, {} on their edge, since cells would have "
+                    "been inverted or squashed; the first at ({:.9g}, {:.9g}, {:.9g})",
+                    report.halved, geometry, report.reversed, at.x, at.y, at.z));
+  }
+  return warnings;
 }
 
 Model model_of_lines(const Mesh& lines, const std::string& stem) {

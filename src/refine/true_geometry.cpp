@@ -135,6 +135,12 @@ TrueGeometry::Hit TrueGeometry::nearest_on_features(Point p, Point direction, Gr
       reach);
 }
 
+TrueGeometry::Hit TrueGeometry::nearest(Point p, double reach) const {
+  return (is_plane_ ? features_ : triangles_)
+      .nearest_if(
+          p, [](std::uint32_t) { return true; }, reach);
+}
+
 bool TrueGeometry::is_on_feature(Point p, double tolerance) const {
   return features_
       .nearest_if(

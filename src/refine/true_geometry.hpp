@@ -27,6 +27,9 @@ class TrueGeometry {
   /// @brief The nearest place of the feature edges and curves, within `reach`.
   /// @param curve  a group of lines: of the curves of its name, where there are some; may be invalid
   Hit nearest_on_features(Point p, Point direction, GroupId curve, double reach) const;
+  /// @brief The nearest place of all triangles, in the plane of all curves, whatever they are called and however they
+  /// run, within `reach`.
+  Hit nearest(Point p, double reach) const;
   /// @return whether p lies on some feature edge or curve, within `tolerance`
   bool is_on_feature(Point p, double tolerance) const;
   /// @return false where the group's faces are not in the model, so that their points must not be moved

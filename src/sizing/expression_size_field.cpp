@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "delfront/errors.hpp"
 #include "delfront/size_expression.hpp"
@@ -15,27 +16,36 @@ namespace {
 constexpr std::size_t kChunk = 512;
 constexpr double kLeast = std::numeric_limits<double>::min();  // the lower bound where none better is proved
 
-[[noreturn]] void fail_value(const Expression& expression, const char* what, Point at, double value) {
-  throw InputError(fmt::format("expression {} gives {:.6g} at ({:.6g}, {:.6g}, {:.6g}); {} must be positive: use "
-                               "max(…, the least you want){}",
-                               quoted(expression.text()), std::isnan(value) ? std::abs(value) : value, at.x, at.y, at.z,
-                               what, std::isnan(value) ? " inside of roots, logarithms and divisors" : ""),
-                   {{at, {}}});
+/// A formula and the part of ExpressionSizes that it is.
+struct Formula {
+  Expression expression;
+  const char* part;
+
+  const char* what() const { return part == std::string_view("delta") ? "sizes" : "stretchings"; }
+};
+
+[[noreturn]] void fail_value(const Formula& formula, Point at, double value) {
+  throw ExpressionError(
+      formula.part,
+      fmt::format("expression {} gives {:.6g} at ({:.6g}, {:.6g}, {:.6g}); {} must be positive: use max(…, the least "
+                  "you want){}",
+                  quoted(formula.expression.text()), std::isnan(value) ? std::abs(value) : value, at.x, at.y, at.z,
+                  formula.what(), std::isnan(value) ? " inside of roots, logarithms and divisors" : ""),
+      {{at, {}}});
 }
 
-void check_values(const Expression& expression, const char* what, std::span<const Point> at,
-                  std::span<const double> values) {
+void check_values(const Formula& formula, std::span<const Point> at, std::span<const double> values) {
   bool is_good = true;
   for (const double value : values) is_good &= value > 0;
   if (is_good) return;
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!(values[i] > 0)) fail_value(expression, what, at[i], values[i]);
+    if (!(values[i] > 0)) fail_value(formula, at[i], values[i]);
 }
 
-void check_samples(const Expression& expression, const char* what, std::span<const Point> at) {
+void check_samples(const Formula& formula, std::span<const Point> at) {
   std::vector<double> values(at.size());
-  expression.evaluate(at, values);
-  check_values(expression, what, at, values);
+  formula.expression.evaluate(at, values);
+  check_values(formula, at, values);
 }
 
 std::vector<Point> corners_and_centre(const Box& box) {
@@ -61,11 +71,11 @@ std::vector<Point> grid_of(const Box& box) {
 }
 
 /// Cuts the domain wherever intervals do not prove the values positive, and samples what is left.
-void look_for_bad_values(const Expression& expression, const char* what, const Box& domain, Context& context) {
+void look_for_bad_values(const Formula& formula, const Box& domain, Context& context) {
   constexpr std::size_t kMostParts = 2048;
   constexpr int kMostCuts = 48;
   const auto is_proved = [&](const Box& box) {
-    const ExpressionBounds bounds = expression.bounds(box);
+    const ExpressionBounds bounds = formula.expression.bounds(box);
     return bounds.low > 0 && bounds.low <= bounds.high && !bounds.may_be_no_number;
   };
   std::vector<Box> open{domain};
@@ -74,7 +84,7 @@ void look_for_bad_values(const Expression& expression, const char* what, const B
     std::vector<Box> next;
     for (const Box& box : open) {
       if (is_proved(box)) continue;
-      check_samples(expression, what, corners_and_centre(box));
+      check_samples(formula, corners_and_centre(box));
       const Point side = box.high - box.low;
       const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
       const double middle = box.low[axis] + 0.5 * side[axis];
@@ -87,23 +97,24 @@ void look_for_bad_values(const Expression& expression, const char* what, const B
     open = std::move(next);
     if (open.empty()) return;
   }
-  check_samples(expression, what, grid_of(domain));
+  check_samples(formula, grid_of(domain));
 }
 
 using Direction = std::array<Expression, 3>;
 
 class ExpressionSizeField final : public SizeField {
  public:
-  ExpressionSizeField(const ExpressionSizes& in, Context& context) : delta_(compile("size", in.delta, in.names)) {
-    if (in.s1) s1_ = compile("s1", *in.s1, in.names);
-    if (in.s2) s2_ = compile("s2", *in.s2, in.names);
+  ExpressionSizeField(const ExpressionSizes& in, Context& context)
+      : delta_{compile("size", in.delta, in.names), "delta"} {
+    if (in.s1) s1_ = Formula{compile("s1", *in.s1, in.names), "s1"};
+    if (in.s2) s2_ = Formula{compile("s2", *in.s2, in.names), "s2"};
     if (s2_ && in.first && !in.second)
       throw UsageError("size expression with s2 and first: say in second along which direction s2 acts");
     if (in.first) first_ = compile("first", *in.first, in.names);
     if (in.second) second_ = compile("second", *in.second, in.names);
     const Point far = Point{1, 1, 1} * std::numeric_limits<double>::max();
     const Box everywhere{-1 * far, far};
-    const ExpressionBounds bounds = delta_.bounds(everywhere);
+    const ExpressionBounds bounds = delta_.expression.bounds(everywhere);
     if (bounds.low <= bounds.high) largest_ = std::max(bounds.high, kLeast);
     if (!in.domain.is_empty()) look_for_bad_values(in.domain, context);
   }
@@ -113,8 +124,8 @@ class ExpressionSizeField final : public SizeField {
 
   void sizes(std::span<const Point> at, std::span<double> size) const override {
     DELFRONT_CHECK(at.size() == size.size());
-    delta_.evaluate(at, size);
-    check_values(delta_, "sizes", at, size);
+    delta_.expression.evaluate(at, size);
+    check_values(delta_, at, size);
     if (is_isotropic()) return;
     std::array<double, kChunk> s1, s2;
     for (std::size_t first = 0; first < at.size(); first += kChunk) {
@@ -131,8 +142,8 @@ class ExpressionSizeField final : public SizeField {
     std::array<Point, kChunk> first, second;
     for (std::size_t begin = 0; begin < at.size(); begin += kChunk) {
       const auto part = at.subspan(begin, std::min(kChunk, at.size() - begin));
-      delta_.evaluate(part, std::span(delta).first(part.size()));
-      check_values(delta_, "sizes", part, std::span(delta).first(part.size()));
+      delta_.expression.evaluate(part, std::span(delta).first(part.size()));
+      check_values(delta_, part, std::span(delta).first(part.size()));
       stretchings(part, s1, s2);
       directions(part, first, second);
       for (std::size_t i = 0; i < part.size(); ++i)
@@ -142,8 +153,8 @@ class ExpressionSizeField final : public SizeField {
   }
 
   double lower_bound(const Box& box) const override {
-    const auto least = [&](const Expression& expression) {
-      const ExpressionBounds bounds = expression.refined_bounds(box);
+    const auto least = [&](const Formula& formula) {
+      const ExpressionBounds bounds = formula.expression.refined_bounds(box);
       return bounds.low <= bounds.high ? bounds.low : std::numeric_limits<double>::infinity();
     };
     double bound = least(delta_);
@@ -166,9 +177,9 @@ class ExpressionSizeField final : public SizeField {
 
   void look_for_bad_values(const Box& domain, Context& context) const {
     if (!is_finite(domain.low) || !is_finite(domain.high)) throw UsageError("domain of a size expression not finite");
-    delfront::look_for_bad_values(delta_, "sizes", domain, context);
-    if (s1_) delfront::look_for_bad_values(*s1_, "stretchings", domain, context);
-    if (s2_) delfront::look_for_bad_values(*s2_, "stretchings", domain, context);
+    delfront::look_for_bad_values(delta_, domain, context);
+    if (s1_) delfront::look_for_bad_values(*s1_, domain, context);
+    if (s2_) delfront::look_for_bad_values(*s2_, domain, context);
     if (is_isotropic()) return;
     const std::vector<Point> at = grid_of(domain);
     std::vector<Metric> metric(at.size());
@@ -176,22 +187,23 @@ class ExpressionSizeField final : public SizeField {
   }
 
   void stretchings(std::span<const Point> at, std::array<double, kChunk>& s1, std::array<double, kChunk>& s2) const {
-    const auto fill = [&](const std::optional<Expression>& expression, std::array<double, kChunk>& values) {
-      if (!expression) return values.fill(1);
-      expression->evaluate(at, std::span(values).first(at.size()));
-      check_values(*expression, "stretchings", at, std::span(values).first(at.size()));
+    const auto fill = [&](const std::optional<Formula>& formula, std::array<double, kChunk>& values) {
+      if (!formula) return values.fill(1);
+      formula->expression.evaluate(at, std::span(values).first(at.size()));
+      check_values(*formula, at, std::span(values).first(at.size()));
       for (std::size_t i = 0; i < at.size(); ++i)
-        if (std::isinf(values[i])) fail_infinite(*expression, at[i]);
+        if (std::isinf(values[i])) fail_infinite(*formula, at[i]);
     };
     fill(s1_, s1);
     fill(s2_, s2);
   }
 
-  [[noreturn]] static void fail_infinite(const Expression& expression, Point at) {
-    throw InputError(
+  [[noreturn]] static void fail_infinite(const Formula& formula, Point at) {
+    throw ExpressionError(
+        formula.part,
         fmt::format("expression {} gives infinity at ({:.6g}, {:.6g}, {:.6g}); stretchings must be finite: "
                     "use min(…, the largest you want)",
-                    quoted(expression.text()), at.x, at.y, at.z),
+                    quoted(formula.expression.text()), at.x, at.y, at.z),
         {{at, {}}});
   }
 
@@ -206,7 +218,8 @@ class ExpressionSizeField final : public SizeField {
   static Point unit(Point v, const char* word, Point at) {
     const double size = length(v);
     if (!(size > 0) || !std::isfinite(size))
-      throw InputError(
+      throw ExpressionError(
+          word,
           fmt::format("direction '{}' has the length {:.6g} at ({:.6g}, {:.6g}, {:.6g}); it must be "
                       "positive{}",
                       word, size, at.x, at.y, at.z, word[0] == 's' ? ", also of what is not along 'first'" : ""),
@@ -241,8 +254,8 @@ class ExpressionSizeField final : public SizeField {
                                                                  : Point{0, 0, 1});
   }
 
-  Expression delta_;
-  std::optional<Expression> s1_, s2_;
+  Formula delta_;
+  std::optional<Formula> s1_, s2_;
   std::optional<Direction> first_, second_;
   double largest_ = std::numeric_limits<double>::infinity();
 };

@@ -189,17 +189,23 @@ GeometrySources find_gap_sizes(const Model& model, const GapSizes& wish, Context
   if (is_in_the_plane(model)) return find_plane_gap_sizes(model, wish, context);
   const Facets facets(model);
   const GapFinder finder(facets, wish);
-  constexpr std::size_t kGrain = 256;
+  constexpr std::size_t kGrain = 256, kBlocksPerReport = 16;
   const std::size_t n = facets.num_triangles(), num_blocks = (n + kGrain - 1) / kGrain;
   std::vector<GeometrySources> blocks(num_blocks);
-  parallel_for(context.threads, num_blocks, [&](std::size_t block) {
+  const auto look_from = [&](std::size_t block) {
     context.check_limits();
     for (std::size_t t = block * kGrain; t < std::min(n, (block + 1) * kGrain); ++t) {
       if (!facets.is_used[t]) continue;
       if (wish.side != GapSizes::Side::ahead) blocks[block].append(finder.look(static_cast<std::uint32_t>(t), -1));
       if (wish.side != GapSizes::Side::behind) blocks[block].append(finder.look(static_cast<std::uint32_t>(t), 1));
     }
-  });
+  };
+  for (std::size_t first = 0; first < num_blocks; first += kBlocksPerReport) {  // progress is told by this thread
+    context.progress("sizes", std::min(n, first * kGrain), n, "triangles looked from");
+    parallel_for(context.threads, std::min(kBlocksPerReport, num_blocks - first),
+                 [&](std::size_t i) { look_from(first + i); });
+  }
+  context.progress("sizes", n, n, "triangles looked from");
   GeometrySources found;
   for (GeometrySources& block : blocks) found.append(std::move(block));
   return found;
@@ -211,7 +217,7 @@ GeometrySources find_line_gap_sizes(const Model& model, const GapSizes& wish, Co
   const LineFinder finder(facets, wish);
   GeometrySources found;
   for (std::size_t e = 0; e < facets.edges.size(); ++e) {
-    if (e % 256 == 0) context.check_limits();
+    if (e % 256 == 0) context.progress("sizes", e, facets.edges.size(), "edges looked from");
     if (!facets.is_line[e]) continue;
     for (const std::uint32_t half : facets.edges.half_edges(e)) finder.look(half, 0, 1, 0, found);
   }

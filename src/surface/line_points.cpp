@@ -14,6 +14,8 @@ constexpr double kSamplesPerSide = 4;
 constexpr double kTurnPerSide = 3.14159265358979323846 / 3;
 constexpr double kMostForTurns = 4;           ///< times the sides that the size asks for
 constexpr std::size_t kMostSamples = 100000;  ///< on one given edge
+constexpr std::size_t kPointsPerLimitCheck = std::size_t{1} << 16;
+constexpr std::size_t kSidesOfTet = 12;  ///< of its faces: no more sides of lines come with a cell
 
 /// A line with the integral of 1 / h along it, at samples.
 struct MeasuredLine {
@@ -21,10 +23,16 @@ struct MeasuredLine {
   std::vector<double> sum;
 };
 
-MeasuredLine measure(const SurfaceParts& parts, const SurfaceLine& line, const SizeField& size) {
+MeasuredLine measure(const SurfaceParts& parts, const SurfaceLine& line, const SizeField& size,
+                     const Context& context) {
   MeasuredLine result;
   std::vector<Point> places;
+  std::size_t checked = 0;
   for (std::uint32_t i = 0; i < line.edges.size(); ++i) {
+    if (places.size() - checked > kPointsPerLimitCheck) {
+      context.check_limits();
+      checked = places.size();
+    }
     const Point a = parts.model.points[line.vertices[i]], b = parts.model.points[line.vertices[i + 1]];
     const double h = std::min({size.size(a), size.size(b), size.size(0.5 * (a + b))});
     const double wanted = std::ceil(kSamplesPerSide * distance(a, b) / h);
@@ -83,16 +91,21 @@ std::vector<LinePoint> keep(const SurfaceLine& line) {
 }
 
 /// The integral in n equal parts.
-std::vector<LinePoint> divide(const SurfaceLine& line, const MeasuredLine& measured, std::size_t n) {
+std::vector<LinePoint> divide(const SurfaceLine& line, const MeasuredLine& measured, std::size_t n,
+                              const Context& context) {
+  context.check_cells(n / kSidesOfTet);
   std::vector<LinePoint> places = {{0, 0}};
-  for (std::size_t k = 1; k < n; ++k) places.push_back(place_at(measured, measured.sum.back() * double(k) / double(n)));
+  for (std::size_t k = 1; k < n; ++k) {
+    if (k % kPointsPerLimitCheck == 0) context.check_limits();
+    places.push_back(place_at(measured, measured.sum.back() * double(k) / double(n)));
+  }
   places.push_back({static_cast<std::uint32_t>(line.edges.size() - 1), 1});
   return places;
 }
 
 /// Two lines of one side each between the same corners would be the same side: the longer one gets two.
 void raise_doubles(const SurfaceParts& parts, const SizeField& size, const std::vector<bool>& is_kept,
-                   LineDivision& division) {
+                   LineDivision& division, const Context& context) {
   std::map<std::pair<VertexId, VertexId>, std::size_t> single;
   for (std::size_t l = 0; l < parts.lines.size(); ++l) {
     const SurfaceLine& line = parts.lines[l];
@@ -105,7 +118,7 @@ void raise_doubles(const SurfaceParts& parts, const SizeField& size, const std::
       raised = other;
       it->second = l;
     }
-    division[raised] = divide(parts.lines[raised], measure(parts, parts.lines[raised], size), 2);
+    division[raised] = divide(parts.lines[raised], measure(parts, parts.lines[raised], size, context), 2, context);
   }
 }
 
@@ -116,18 +129,19 @@ void divide_lines(const SurfaceParts& parts, const SizeField& size, const std::v
   division.resize(parts.lines.size());
   parallel_for(context.threads, parts.lines.size(), [&](std::size_t l) {
     if (!is_due[l]) return;
+    context.check_limits();
     const SurfaceLine& line = parts.lines[l];
     if (is_kept[l]) {
       division[l] = keep(line);
       return;
     }
-    const MeasuredLine measured = measure(parts, line, size);
-    division[l] = divide(line, measured, number_of_sides(parts, line, measured.sum.back()));
+    const MeasuredLine measured = measure(parts, line, size, context);
+    division[l] = divide(line, measured, number_of_sides(parts, line, measured.sum.back()), context);
   });
-  raise_doubles(parts, size, is_kept, division);
+  raise_doubles(parts, size, is_kept, division, context);
 }
 
-LinePoints make_line_points(const SurfaceParts& parts, const LineDivision& division) {
+LinePoints make_line_points(const SurfaceParts& parts, const LineDivision& division, const Context& context) {
   LinePoints result;
   std::vector<std::uint32_t> point_of(parts.model.points.size(), kNoTriangle);
   const auto given = [&](VertexId v) {
@@ -144,6 +158,7 @@ LinePoints make_line_points(const SurfaceParts& parts, const LineDivision& divis
     const SurfaceLine& line = parts.lines[l];
     std::vector<std::uint32_t> chain;
     for (std::size_t i = 0; i < division[l].size(); ++i) {
+      if (result.points.size() % kPointsPerLimitCheck == 0) context.check_limits();
       const LinePoint at = division[l][i];
       if (at.t <= 0 || at.t >= 1) {
         chain.push_back(given(line.vertices[at.edge + (at.t >= 1)]));

@@ -28,10 +28,11 @@ using LineDivision = std::vector<std::vector<LinePoint>>;
 /// in equal parts; no two lines get the same single side.
 /// @param is_due    by line: is divided anew, others stay
 /// @param is_kept   by line: keeps its given points
+/// @throws LimitError, Cancelled
 /// @par Source  Löhner (2008), 2.6: sides along curves
 void divide_lines(const SurfaceParts& parts, const SizeField& size, const std::vector<bool>& is_due,
                   const std::vector<bool>& is_kept, LineDivision& division, Context& context);
 
-LinePoints make_line_points(const SurfaceParts& parts, const LineDivision& division);
+LinePoints make_line_points(const SurfaceParts& parts, const LineDivision& division, const Context& context);
 
 }  // namespace delfront

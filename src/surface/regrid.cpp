@@ -153,7 +153,7 @@ void Regridder::divide() {
   size_.lower(lowered_, context_);
   divide_lines(parts_, size_, line_is_due_, line_is_kept_, division_, context_);
   line_is_due_.assign(parts_.lines.size(), false);
-  lines_ = make_line_points(parts_, division_);
+  lines_ = make_line_points(parts_, division_, context_);
   lower_near_short_sides();
   for (std::uint32_t r = 0; r < borders_.size(); ++r)
     borders_[r] = find_border(parts_, parts_.regions[r], lines_, division_);

@@ -36,7 +36,8 @@ constexpr double kMostDeferred = 0.15;  ///< share of the faces that slabs may l
 constexpr double kWorthSlabs = 0.02;    ///< share that is worth cutting again
 constexpr std::size_t kFacesPerCancelCheck = 256;
 constexpr std::size_t kFacesPerShare = 8192;  ///< of the front, that one thread shares out among the slabs
-constexpr int kSweepsAgain = 4;  ///< times that a ring round what is left is emptied and all sweeps are made
+constexpr int kSweepsAgain = 4;           ///< times that a ring round what is left is emptied and all sweeps are made
+constexpr double kMuchByDelaunay = 0.01;  ///< of all cells: worth a word
 constexpr std::size_t kFew = 3;  ///< times so many faces in the front as there are to do: only those near are searched
 constexpr int kPhases = 4;       ///< three axes, then one piece
 
@@ -102,14 +103,31 @@ class Front {
       left = fill_cavities(front_, waiting_, report_, context_);
       left = fill_by_stars(front_, left, report_, context_);
     }
-    if (!left.empty()) close_by_delaunay(front_, left, report_, context_);
+    if (!left.empty()) {
+      report_.delaunay_places = places_of_cavities(front_, left);
+      close_by_delaunay(front_, left, report_, context_);
+    }
     DELFRONT_CHECK(front_.obstacles().num_pending() == 0);
     front_.join();
     fill_report();
+    warn_of_delaunay();
     return report_;
   }
 
  private:
+  /// A grid that was asked of the front is not quite one.
+  void warn_of_delaunay() const {
+    const double share = static_cast<double>(report_.closed_by_delaunay) / static_cast<double>(c_.num_live());
+    if (share <= kMuchByDelaunay) return;
+    const Point at = report_.delaunay_places.empty() ? Point{} : report_.delaunay_places[0].at;
+    context_.warn(fmt::format(
+        "{} cells ({:.0f} % of all) were put in by constrained Delaunay, not by the front, in {} cavities that it "
+        "could "
+        "not fill, the widest at ({:g}, {:g}, {:g}): most often the surface's triangles there are much longer than the "
+        "space before them is wide; finer ones help (--surface-method front --gap 1)",
+        report_.closed_by_delaunay, 100 * share, report_.delaunay_places.size(), at.x, at.y, at.z));
+  }
+
   void sweep(const FrontSettings& settings) {
     if (waiting_.empty()) return;
     settings_ = &settings;

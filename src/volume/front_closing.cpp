@@ -400,6 +400,34 @@ std::vector<std::uint32_t> empty_around(FrontStore& front, const std::vector<std
   return all;
 }
 
+std::vector<Place> places_of_cavities(const FrontStore& front, const std::vector<std::uint32_t>& faces) {
+  std::unordered_map<VertexIndex, VertexIndex> towards;  // trees of corners; at a root itself
+  const auto root_of = [&](VertexIndex v) {
+    for (VertexIndex up = towards.try_emplace(v, v).first->second; up != v; up = towards[v]) {
+      towards[v] = towards[up];
+      v = up;
+    }
+    return v;
+  };
+  for (const std::uint32_t f : faces) {
+    const auto n = front.nodes(f);
+    for (unsigned i = 1; i < 3; ++i) towards[root_of(n[i])] = root_of(n[0]);
+  }
+  std::map<VertexIndex, std::vector<std::uint32_t>> cavities;
+  for (const std::uint32_t f : faces) cavities[root_of(front.nodes(f)[0])].push_back(f);
+  std::vector<const std::vector<std::uint32_t>*> widest_first;
+  for (const auto& [root, cavity] : cavities) widest_first.push_back(&cavity);
+  std::stable_sort(widest_first.begin(), widest_first.end(), [](auto* a, auto* b) { return a->size() > b->size(); });
+  if (widest_first.size() > kMaxPlaces) widest_first.resize(kMaxPlaces);
+  std::vector<Place> places;
+  for (const auto* cavity : widest_first) {
+    const auto n = front.nodes(cavity->front());
+    const TetComplex& c = front.complex();
+    places.push_back({(1.0 / 3) * (c.point(n[0]) + c.point(n[1]) + c.point(n[2])), {}});
+  }
+  return places;
+}
+
 namespace {
 
 /// The cavities as a model of their own: one patch, faces turned outwards.

@@ -22,6 +22,10 @@ std::vector<std::uint32_t> fill_cavities(FrontStore& front, const std::vector<st
 std::vector<std::uint32_t> empty_around(FrontStore& front, const std::vector<std::uint32_t>& faces,
                                         FrontReport& report);
 
+/// @brief A place on each cavity, a set of faces that hang together by their corners; those of most faces first.
+/// @return no more than kMaxPlaces
+std::vector<Place> places_of_cavities(const FrontStore& front, const std::vector<std::uint32_t>& faces);
+
 /// @brief Fill closed cavities by constrained Delaunay with points inside alone (T2).
 /// @throws MeshingError  where boundary recovery gives up, or would have to divide faces
 void close_by_delaunay(FrontStore& front, const std::vector<std::uint32_t>& faces, FrontReport& report,

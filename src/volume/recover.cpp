@@ -25,7 +25,6 @@ namespace delfront {
 namespace {
 
 constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
-constexpr int kMaxRestarts = 80;
 
 /// The mean length of the edges at each of the model's vertices.
 void set_model_sizes(TetComplex& complex, const Model& model, const Segments& segments) {
@@ -62,6 +61,23 @@ TetComplex complex_of_vertices(const Model& model, const Segments& segments) {
   throw MeshingError(
       fmt::format("boundary recovery: {} triangles could not be recovered, the first near ({:g}, {:g}, {:g})",
                   failed.size(), at.x, at.y, at.z),
+      places);
+}
+
+[[noreturn]] void fail_at_edges(const Model& model, const Segments& segments, const std::vector<Piece>& hard,
+                                int rounds) {
+  std::vector<Place> places;
+  for (const Piece& piece : hard) {
+    const auto& [a, b] = segments.ends[piece.edge];
+    places.push_back({0.5 * (model.points[VertexId(a)] + model.points[VertexId(b)]), {a, b}});
+  }
+  const Point at = places[0].at;
+  throw MeshingError(
+      fmt::format(
+          "boundary recovery: {} edges are still missing after {} rounds with {} points put on edges, the first "
+          "near ({:g}, {:g}, {:g}): most often facets there are long and narrow and lie close to others; ask for "
+          "smaller sizes there, or keep the given triangles (--surface-method keep)",
+          hard.size(), rounds, segments.steiner_edge.size(), at.x, at.y, at.z),
       places);
 }
 
@@ -142,9 +158,9 @@ class FlatParts {
 };
 
 /// Switches what lies in the way of missing edges; plans a split of those that stay missing.
-/// @return whether all edges are there
-bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments, const EdgeSet& required,
-                     RecoveryReport& report, Context& context) {
+/// @return those
+std::vector<Piece> switch_to_edges(TetComplex& complex, const Model& model, Segments& segments, const EdgeSet& required,
+                                   RecoveryReport& report, Context& context) {
   const std::vector<Piece> missing = find_missing_pieces(complex, segments, nullptr, context);
   if (segments.steiner_edge.empty()) report.missing_edges = missing.size();
   EdgeFlips flips(complex, required);
@@ -155,7 +171,7 @@ bool switch_to_edges(TetComplex& complex, const Model& model, Segments& segments
     context.check_limits();
   }
   for (const Piece& piece : hard) plan_split(model, segments, piece);
-  return hard.empty();
+  return hard;
 }
 
 /// Refilled cavities of facets take curves away; between the facets they come back by switches.
@@ -184,17 +200,22 @@ bool switch_to_curves(TetComplex& complex, const Model& model, Segments& segment
 
 /// The complex with all facets in it. Edges and facets that resist get points on their edges, and all starts over.
 void recover_boundary(const Model& model, Segments& segments, TetComplex& complex, std::vector<Subface>& subfaces,
-                      RecoveryReport& report, Context& context) {
+                      RecoveryReport& report, const RecoveryEffort& effort, Context& context) {
   std::vector<TriangleId> failed;
+  std::vector<Piece> hard;
   const bool has_curves = segments.num_surface_edges < segments.ends.size();
-  for (int restart = 0; restart < kMaxRestarts; ++restart) {
+  for (int restart = 0; restart < effort.most_rounds; ++restart) {
     complex = complex_of_vertices(model, segments);
     DelaunayKernel kernel(complex);
     build_delaunay(complex, context);
     insert_chains(complex, kernel, model, segments);
     if (restart >= kMaxRestartsWithFlips) recover_segments(complex, kernel, model, segments, context);
     const EdgeSet required = pieces_of_edges(segments);
-    if (!switch_to_edges(complex, model, segments, required, report, context)) continue;
+    hard = switch_to_edges(complex, model, segments, required, report, context);
+    context.progress(
+        "recover", static_cast<std::uint64_t>(restart), 0,
+        fmt::format("rounds, {} edges resist, {} points on edges", hard.size(), segments.steiner_edge.size()));
+    if (!hard.empty()) continue;
     subfaces.clear();
     std::size_t num_missing = 0;
     failed = recover_facets(complex, model, segments, has_curves ? pieces_of_edges(segments, true) : required, subfaces,
@@ -204,6 +225,7 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     for (const TriangleId t : failed)
       for (const std::uint32_t e : segments.of_triangle[t.index()]) plan_split_of_longest(model, segments, e);
   }
+  if (!hard.empty()) fail_at_edges(model, segments, hard, effort.most_rounds);
   if (failed.empty()) fail_at_curves(model);
   fail_at_facets(model, failed);
 }
@@ -273,8 +295,8 @@ void undo_stretch(TetComplex& complex, const Model& model, const Segments& segme
 /// All of recovery, with coordinates stretched by `factor` as long as edges and facets are recovered.
 /// @param grid  holds what there is, also when this throws
 void try_boundary(const Model& model, const std::array<double, 3>& factor, std::size_t most_steiner,
-                  const DomainOptions& domain, const std::vector<bool>& is_far_field, BoundaryGrid& grid,
-                  RecoveryReport& report, Context& context) {
+                  const DomainOptions& domain, const std::vector<bool>& is_far_field, const RecoveryEffort& effort,
+                  BoundaryGrid& grid, RecoveryReport& report, Context& context) {
   const bool is_plain = factor == std::array<double, 3>{1, 1, 1};
   const Model stretched_model = is_plain ? Model() : stretched(model, factor);
   const Model& recovered = is_plain ? model : stretched_model;
@@ -283,7 +305,7 @@ void try_boundary(const Model& model, const std::array<double, 3>& factor, std::
   std::vector<Subface> subfaces;
   grid = {};
   report = {};
-  recover_boundary(recovered, segments, grid.complex, subfaces, report, context);
+  recover_boundary(recovered, segments, grid.complex, subfaces, report, effort, context);
   if (!is_plain) undo_stretch(grid.complex, model, segments, factor);
   const auto facts = colour_regions(grid.complex, subfaces, model, is_far_field, context);
   const std::vector<bool> keep = choose_regions(grid.complex, facts, domain);
@@ -304,7 +326,8 @@ void try_boundary(const Model& model, const std::array<double, 3>& factor, std::
 // Which tets fill a polyhedron does not depend on a stretch along an axis, but how many points its edges need to become
 // Delaunay does: by orders of magnitude where the model is thin. So a thin model that needs many is stretched.
 BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
-                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context) {
+                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context,
+                                     const RecoveryEffort& effort) {
   const StageTimer timer(context, "recover");
   const std::array<double, 3> plain{1, 1, 1}, factor = stretch_of(model.bounding_box());
   constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
@@ -313,14 +336,14 @@ BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& do
   if (factor != plain)
     for (const auto& [how, most] : {std::pair{plain, few}, {factor, kNoBound}}) {
       try {
-        try_boundary(model, how, most, domain, is_far_field, grid, report, context);
+        try_boundary(model, how, most, domain, is_far_field, effort, grid, report, context);
         return grid;
       } catch (const MeshingError&) {
         // the next way may do
       }
     }
   try {
-    try_boundary(model, plain, kNoBound, domain, is_far_field, grid, report, context);
+    try_boundary(model, plain, kNoBound, domain, is_far_field, effort, grid, report, context);
     return grid;
   } catch (const MeshingError& e) {
     throw MeshingError(e.what(), e.places, std::make_shared<const Mesh>(mesh_unfinished(grid.complex, model)));

@@ -29,6 +29,11 @@ struct BoundaryGrid {
   std::size_t num_regions = 0;
 };
 
+/// @brief How long recovery goes on. Each round starts over, with a point more on every edge that resisted.
+struct RecoveryEffort {
+  int most_rounds = 80;  ///< from the 41st on every edge is made Delaunay
+};
+
 /// @brief A tetrahedrization whose faces include every given triangle, vertex for vertex, with regions coloured (T2).
 ///
 /// Vertices 0 … n-1 are the model's points, in order, with the mean length of their edges as size. Every triangle of
@@ -41,6 +46,7 @@ struct BoundaryGrid {
 /// @throws MeshingError with the places; InputError where no region is kept
 /// @par Source  Si & Gärtner (2005), Diazzi et al. (2023), George et al. (2003)
 BoundaryGrid tetrahedralize_boundary(const Model& model, const DomainOptions& domain,
-                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context);
+                                     const std::vector<bool>& is_far_field, RecoveryReport& report, Context& context,
+                                     const RecoveryEffort& effort = {});
 
 }  // namespace delfront

@@ -80,6 +80,11 @@ class PlanarErrors(case.Case):
         self.expect(3, "mesh", "open.poly", "-o", "c.vtu", says="bound nothing")
         self.assertNotIn("c.vtu", self.files())
 
+    def test_a_segment_of_no_length_is_named(self):
+        self.write("point.poly", SQUARE.replace("4 0\n1 1 2", "5 0\n5 3 3\n1 1 2"))
+        self.expect(0, "mesh", "point.poly", "-o", "c.vtu",
+                    says=["1 segments of no length", "the first at (1, 1)"])
+
     def test_a_far_field_that_is_too_small(self):
         self.write("foil.dat", naca0012())
         self.expect(3, "mesh", "foil.dat", "-o", "c.vtu", "--farfield", "circle:0.3c", says="does not enclose")
@@ -174,6 +179,13 @@ class Levels(case.Case):
                     self.assertEqual(report["levels"]["levels"], levels)
                     self.assertEqual(cells, 4**levels * report["levels"]["coarse_cells"])
 
+    def test_too_many_cells_are_refused_before_the_work(self):
+        for levels in (0, 1):
+            self.expect(6, "mesh", "square.poly", "--boundary", "split", "--hmax", "0.002", "--levels", levels, "-o", "c.vtu",
+                        "--max-cells", "20000", says=["stopped before gridding", "5.8e+05 cells", "20000 (--max-cells)"])
+        # A boundary that is kept coarse keeps cells large: nobody knows before.
+        self.expect(0, "mesh", "square.poly", "--hmax", "0.1", "-o", "c.vtu", "--max-cells", "300")
+
     def test_a_round_far_field_stays_round(self):
         self.expect(0, "mesh", "foil.dat", "-o", "c.mesh", "--farfield", "circle:20c", "--levels", "2", "--report", "r.json")
         rings = [self.points_of("c.mesh", tag) for tag in (1, 2)]
@@ -216,7 +228,7 @@ class Levels(case.Case):
         self.expect(2, "mesh", "square.poly", "-o", "foil.dat.vtu", "--levels", "1", "--geometry", "foil.dat.vtu",
                     says="another name")
         self.expect(6, "mesh", "square.poly", "--boundary", "split", "--hmax", "0.02", "--levels", "1", "-o", "c.vtu",
-                    "--max-cells", "1000", says=["limit of 250 cells", "each of which becomes 4"])
+                    "--max-cells", "3000", says=["limit of 750 cells", "each of which becomes 4"])
         self.assertNotIn("c.vtu", self.files())
 
 

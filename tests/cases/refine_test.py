@@ -61,6 +61,19 @@ class Refine(case.Case):
     def test_a_geometry_that_changes_nothing_is_said(self):
         self.expect(0, "refine", "ball.vtu", "-o", "fine.vtu", "--geometry", "coarse.stl", says="no new point had to be moved")
 
+    def test_a_geometry_that_lies_elsewhere_is_said(self):
+        far = [[(x + 100, y, z) for x, y, z in triangle] for triangle in case.sphere_triangles(4)]
+        self.write("far.stl", case.stl_binary(far))
+        says = ["none of the", "half an edge's length of far.stl", "it is 99", "elsewhere"]
+        self.expect(0, "refine", "ball.vtu", "-o", "fine.vtu", "--geometry", "far.stl", says=says)
+        self.expect(0, "mesh", "coarse.stl", "-o", "g.vtu", "--levels", 1, "--geometry", "far.stl", "--report", "r.json", says=says)
+        levels = self.report("r.json")["levels"]
+        self.assertEqual(levels["out_of_reach"], levels["boundary_points"])
+        self.assertGreater(levels["out_of_reach"], 0)
+        self.write("far.dat", "far\n21 0\n20 0.1\n20.5 -0.1\n")
+        self.write("lens.dat", airfoil(10))
+        self.expect(0, "mesh", "lens.dat", "-o", "g.vtu", "--levels", 1, "--geometry", "far.dat", says=["none of the 20", "far.dat"])
+
     def test_quiet_and_json_on_stdout(self):
         self.assertEqual(self.expect(0, "refine", "ball.vtu", "-o", "fine.vtu", "-q").stdout, "")
         result = self.expect(0, "refine", "ball.vtu", "-o", "fine.vtu", "--report", "-", "--progress", "none")
@@ -110,6 +123,25 @@ class RefineSlips(case.Case):
         self.expect(6, "refine", "box.vtu", "-o", "f.vtu", "--memory-limit", "1MB", says="--levels")
         self.expect(6, "refine", "box.vtu", "-o", "f.vtu", "--levels", 400, says="--levels")
         self.assertEqual(self.files(), self.before)
+
+    def test_a_run_that_fails_leaves_its_report(self):
+        failures = [
+            (2, "usage", ["box.vtu", "--levels", 0], "--levels 0"),
+            (3, "bad_input", ["box.vtu", "--geometry", "missing.stl"], "missing.stl"),
+            (3, "bad_input", ["box.stl"], "not a valid grid"),
+            (6, "limit_reached", ["box.vtu", "--levels", 3, "--max-cells", 100], "100"),
+        ]
+        for code, outcome, words, error in failures:
+            self.expect(code, "refine", *words, "-o", "f.vtu", "--report", "r.json")
+            report = self.report("r.json")
+            self.assertEqual((report["outcome"], report["exit_code"]), (outcome, code))
+            self.assertIn(error, report["error"])
+            self.assertEqual(report["files_written"], [])
+            (self.folder / "r.json").unlink()
+        self.assertEqual(self.files(), self.before)
+        self.expect(0, "refine", "box.vtu", "-o", "f.vtu", "--report", "r.json")
+        report = self.report("r.json")
+        self.assertEqual((report["outcome"], report["exit_code"], report["error"]), ("done", 0, None))
 
     def test_places_where_no_file_can_be(self):
         self.expect(7, "refine", "box.vtu", "-o", "nofolder/f.vtu", says="nofolder/f.vtu")

@@ -92,6 +92,15 @@ class SizeSlips(case.Case):
         self.refuse(2, '[size]\nexpression = "0.1 + (x - 0.125)/(x - 0.125)"', 4, "gives nan at (0.125, ")
         self.refuse(2, '[size]\nexpression = "0.1*x"', 4, "sizes must be positive")
 
+    def test_the_formula_at_fault_is_named(self):
+        job = '[size.expression]\ndelta = "0.1"\n'
+        self.refuse(2, job + 's1 = "-1"', 5, "size.expression.s1: expression '-1' gives -1", "stretchings must be positive")
+        self.refuse(2, job + 's1 = "2"\ns2 = "y"', 6, "size.expression.s2: expression 'y'", "stretchings must be positive")
+        self.refuse(2, job + 's1 = "1 +"', 5, "size.expression.s1: expression '1 +'")
+        self.refuse(2, job + 's1 = "2"\nfirst = ["x", "y", "0"]', 6, "size.expression.first: direction 'first'", "length 0")
+        self.refuse(2, job + 's1 = "2"\nfirst = ["1", "r", "0"]', 6, "size.expression.first", "unknown name 'r'")
+        self.refuse(2, job + 's1 = "distance(\\"wing\\")"', 5, "size.expression.s1", "no patch, curve or corner")
+
     def test_backgrounds_hold_sizes(self):
         self.write("nan.msh", background((0.1, 0.1, "nan", 0.1)))
         self.write("negative.msh", background((0.1, 0.1, 0.1, -1)))

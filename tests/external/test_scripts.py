@@ -61,12 +61,41 @@ class Scripts(unittest.TestCase):
         middle = image[350:550, 600:800].reshape(-1, 3).mean(axis=0)
         self.assertGreater(middle[1], 1.15 * middle[0])  # 45 degrees: greenish blue, neither paper nor grey boundary
 
-    def test_picture_refuses_a_surface(self):
+    def test_picture_of_a_surface(self):
         grid = cube_grid(2)
         meshio.Mesh(grid.points, [("triangle", grid.cells_dict["triangle"])]).write(self.grid)
+        for by in ("quality", "region"):
+            done = run("picture.py", self.grid, self.path("cube.png"), "--by", by, DISPLAY="")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("48 triangles, smallest angle 45.00", done.stdout)
+            middle = matplotlib.image.imread(self.path("cube.png"))[400:500, 750:850, :3].reshape(-1, 3).mean(axis=0)
+            self.assertEqual(middle[2] > 1.15 * middle[0], by == "quality", middle)  # bluish, or grey
+
+    def test_picture_of_a_plane(self):
+        """A square of 8 equal triangles, and one flat triangle beside it: red among blue, or all of one colour."""
+        n = np.arange(9)
+        points = np.c_[n % 3, n // 3, 0 * n].astype(float)
+        points = np.concatenate([points, [[4, 1, 0]]])
+        square = [(i, i + 1, i + 4) for i in (0, 1, 3, 4)] + [(i, i + 4, i + 3) for i in (0, 1, 3, 4)]
+        cells = [("triangle", np.array(square + [(2, 9, 5), (5, 9, 8)])), ("line", np.array([(0, 1), (1, 2)]))]
+        meshio.Mesh(points, cells).write(self.grid)
+        shares = {}
+        for by, zoom in (("quality", "0,0,4,2"), ("region", "0,0,4,2"), ("quality", "-1,-1,2,2")):
+            done = run("picture.py", self.grid, self.path("p.png"), "--by", by, "--zoom", zoom, DISPLAY="")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("10 cells, smallest angle 26.57", done.stdout)
+            image = matplotlib.image.imread(self.path("p.png"))[:, :, :3]
+            shares[by, zoom] = (image[:, :, 0] > image[:, :, 2] + 0.1).mean()  # red over blue
+        self.assertGreater(shares["quality", "0,0,4,2"], 0.2)
+        self.assertLess(shares["region", "0,0,4,2"], 0.05)
+        self.assertLess(shares["quality", "-1,-1,2,2"], 0.05)
+        self.assertNotEqual(run("picture.py", self.grid, self.path("p.png"), "--zoom", "0,0,0,1,1,1").returncode, 0)
+
+    def test_picture_refuses_what_has_nothing_to_draw(self):
+        meshio.Mesh(np.eye(3), [("vertex", np.array([[0], [1]]))]).write(self.grid)
         done = run("picture.py", self.grid, self.path("cube.png"))
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("no tetrahedra", done.stderr)
+        self.assertIn("neither tetrahedra nor triangles", done.stderr)
 
     def test_missing_programs_are_skipped_by_name(self):
         cube_grid(1).write(self.grid)

@@ -82,6 +82,9 @@ TEST(ReadDat, D5_what_is_odd_is_said) {
   ASSERT_FALSE(turned.warnings.empty());
   EXPECT_NE(turned.warnings[0].find("line 3"), std::string::npos) << turned.warnings[0];
   EXPECT_FALSE(read_dat_text("x\n1 0.2\n0.5 0.06\n0 0\n0.5 -0.06\n1 -0.2\n").warnings.empty());
+  EXPECT_FALSE(read_dat_text("x\n0 0\n1 0\n1 1\n0 1\n").warnings.empty()) << "a side is missing";
+  EXPECT_TRUE(read_dat_text("x\n0 0\n1 0\n1 1\n0 1\n0 0\n").warnings.empty()) << "closed by its last point";
+  EXPECT_EQ(read_dat_text("x\n0 0\n1 0\n1 1\n999 999\n3 0\n4 0\n4 1\n3 0\n").warnings.size(), 1u) << "the first";
 }
 
 TEST(ReadDat, D5_malformed_files_are_refused_with_the_line) {

@@ -109,6 +109,41 @@ TEST_F(RunJob, limits_hold_while_lines_and_surfaces_are_divided) {
   EXPECT_EQ(run().exit_code, ExitCode::limit_reached);
 }
 
+TEST_F(RunJob, limits_hold_while_curves_of_the_job_are_divided) {
+  PlanarCurveOptions curve;
+  curve.name = "o";
+  curve.at = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  curve.closed = true;
+  options_.input.files = {};
+  for (const char* type : {"spline", "line"}) {
+    SCOPED_TRACE(type);
+    curve.type = type;
+    curve.h = Length{1e-9, ""};  // 3 billion pieces
+    options_.planar.curves = {curve};
+    context_.max_cells = 10'000;
+    JobResult result = run();
+    EXPECT_EQ(result.exit_code, ExitCode::limit_reached);
+    EXPECT_NE(result.error.find("planar.curve[0]"), std::string::npos) << result.error;
+    context_.max_cells = 0;
+    EXPECT_EQ(run().exit_code, ExitCode::limit_reached) << "more than fit";
+    options_.planar.curves[0].h = Length{2e-8, ""};  // 170 million: 4 gigabytes
+    context_.memory_limit = resident_memory() + (std::uint64_t{100} << 20);
+    result = run();
+    EXPECT_EQ(result.exit_code, ExitCode::limit_reached);
+    EXPECT_LT(result.peak_memory, context_.memory_limit + (std::uint64_t{300} << 20));
+    context_.memory_limit = 0;
+  }
+}
+
+TEST_F(RunJob, the_memory_limit_holds_while_lines_of_surfaces_are_divided) {
+  options_.surface.method = "front";
+  options_.size.hmax = Length{2e-8, ""};  // 50 million sides an edge
+  context_.memory_limit = resident_memory() + (std::uint64_t{100} << 20);
+  const JobResult result = run();
+  EXPECT_EQ(result.exit_code, ExitCode::limit_reached);
+  EXPECT_LT(result.peak_memory, context_.memory_limit + (std::uint64_t{300} << 20));
+}
+
 TEST_F(RunJob, warnings_of_the_plane_are_told_as_they_come_and_once) {
   std::ofstream(path("square.poly")) << "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n";
   options_.input.files = {path("square.poly")};

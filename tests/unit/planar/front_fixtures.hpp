@@ -153,7 +153,7 @@ inline Filled fill_domain(const PlanarDomain& domain, const Options& options, st
                           FrontWatcher* watcher = nullptr) {
   Context context;
   const bool is_stretched = sizes && !sizes->is_isotropic();
-  auto [grid, size] = prepare_planar(domain, options, is_stretched ? nullptr : sizes, context);
+  auto [grid, size, is_too_long] = prepare_planar(domain, options, is_stretched ? nullptr : sizes, context);
   if (is_stretched) size = sizes;
   const std::vector<double> areas = areas_of_regions(grid);
   std::set<VertexIndex> used_before, used;

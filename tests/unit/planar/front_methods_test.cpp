@@ -53,7 +53,7 @@ TEST(PlanarMethods, F6_a_front_places_points_more_regularly_than_circumcentres_d
   const Options defaults;
   const auto quality_of = [&](PointPlacement placement) {
     Context context;
-    auto [grid, size] = prepare_planar(domain, defaults, nullptr, context);
+    auto [grid, size, is_too_long] = prepare_planar(domain, defaults, nullptr, context);
     refine_complex(grid, *size, context, placement);
     EXPECT_STREQ(grid.complex.find_defect(), "");
     EXPECT_TRUE(grid.complex.is_delaunay());
@@ -108,7 +108,7 @@ TEST(SmoothComplex, F18_raises_the_mean_and_keeps_what_is_given) {
     if (seed % 2 == 0) options.planar.boundary = "split";
     const PlanarDomain domain = random_domain(random, 40);
     Context context;
-    auto [grid, size] = prepare_planar(domain, options, random_sizes(random, 0.01), context);
+    auto [grid, size, is_too_long] = prepare_planar(domain, options, random_sizes(random, 0.01), context);
     const std::size_t num_given = grid.complex.point.size();
     fill_by_front(grid, *size, context);
     grid.complex.index_vertices();

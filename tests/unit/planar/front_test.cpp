@@ -200,7 +200,7 @@ TEST(FillByFront, F5_a_boundary_is_divided_in_the_metric) {
   options.planar.boundary = "split";
   Context context;
   const auto sizes = std::make_shared<Stretched>(0.01, 12);
-  auto [grid, size] = prepare_planar(domain, options, sizes, context);
+  auto [grid, size, is_too_long] = prepare_planar(domain, options, sizes, context);
   std::size_t good = 0;
   for (const PlanarPiece& piece : grid.pieces) {
     const Point2 e = grid.complex.point[piece.b] - grid.complex.point[piece.a];

@@ -6,6 +6,7 @@
 
 #include "delfront/grid_check.hpp"
 #include "delfront/planar.hpp"
+#include "planar/prepare.hpp"
 #include "planar_fixtures.hpp"
 
 namespace delfront {
@@ -225,6 +226,39 @@ TEST(GeneratePlanar, T3_split_boundary_lies_on_the_given_one) {
     total += length;
   }
   EXPECT_NEAR(total, given, 1e-12 * given);
+}
+
+/// Length of a piece over the sizes along it, by the middle of each of many parts.
+double sizes_in(const Point2& a, const Point2& b, const SizeField& size) {
+  constexpr int kParts = 200;
+  double sum = 0;
+  for (int i = 0; i < kParts; ++i) {
+    const double t = (i + 0.5) / kParts;
+    sum += std::hypot(b.x - a.x, b.y - a.y) / kParts / size.size({a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), 0});
+  }
+  return sum;
+}
+
+/// The last sizes, not those before pieces were halved for points in their circles.
+TEST(GeneratePlanar, T3_no_side_of_a_split_boundary_is_longer_than_the_square_root_of_two_sizes) {
+  std::mt19937_64 random(3);
+  for (int seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    PlanarDomain domain;
+    add_loop(domain, star(random, {0, 0}, 0.3, 1, 5 + seed % 13), "outer");
+    add_loop(domain, reversed(circle({0.01, 0.02}, 0.02 + 0.004 * (seed % 9), 5 + seed % 40)), "hole");
+    Options options;
+    options.planar.boundary = "split";
+    if (seed % 3 == 0) options.size.hmax = Length{0.05 + 0.001 * seed, ""};
+    if (seed % 3 == 1) options.size.growth = 1.1 + 0.02 * seed;
+    Context context;
+    const PlanarPrepared prepared = prepare_planar(domain, options, nullptr, context);
+    double worst = 0;
+    for (const PlanarPiece& piece : prepared.grid.pieces)
+      worst = std::max(
+          worst, sizes_in(prepared.grid.complex.point[piece.a], prepared.grid.complex.point[piece.b], *prepared.size));
+    EXPECT_LT(worst, 1.43);  // sizes are sampled
+  }
 }
 
 TEST(GeneratePlanar, T3_sharp_corners_end) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "delfront/errors.hpp"
 #include "delfront/geometry_sizes.hpp"
@@ -52,6 +53,27 @@ TEST(GapSizes, S10_between_two_spheres) {
   EXPECT_EQ(range.count, builder.model().triangles.size());
   EXPECT_NEAR(range.low, 0.1 / 4, 0.1 * 0.1 / 4);
   EXPECT_NEAR(range.high, 0.1 / 4, 0.1 * 0.1 / 4);
+}
+
+TEST(GapSizes, S10_progress_is_told_by_the_callers_thread_while_a_large_surface_is_looked_at) {
+  SurfaceBuilder builder;
+  fixtures::add_sphere(builder, 1, 120, 60, 0);
+  Context context;
+  context.threads = 2;
+  std::vector<Progress> told;
+  const auto caller = std::this_thread::get_id();
+  context.on_progress = [&](const Progress& progress) {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    told.push_back(progress);
+  };
+  find_gap_sizes(builder.model(), cells(1), context);
+  ASSERT_GE(told.size(), 4u);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    EXPECT_EQ(told[i].stage, "sizes");
+    EXPECT_EQ(told[i].total, builder.model().triangles.size());
+    EXPECT_EQ(told[i].done > (i > 0 ? told[i - 1].done : 0), i > 0);
+  }
+  EXPECT_EQ(told.back().done, told.back().total);
 }
 
 TEST(GapSizes, S10_inside_of_a_sphere_it_is_the_diameter) {

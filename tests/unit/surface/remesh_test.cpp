@@ -19,7 +19,7 @@ void expect_remeshed(const Model& model, double h) {
   LineDivision division;
   divide_lines(parts, size, std::vector<bool>(parts.lines.size(), true), std::vector<bool>(parts.lines.size(), false),
                division, context);
-  const LinePoints lines = make_line_points(parts, division);
+  const LinePoints lines = make_line_points(parts, division, context);
   for (const SurfaceRegion& region : parts.regions) {
     const SurfaceSupport support(parts, region);
     const RegionBorder border = find_border(parts, region, lines, division);
@@ -115,7 +115,7 @@ TEST(RegionCheck, NamesWhatIsWrong) {
   const SurfaceParts parts(cube, size, context);
   LineDivision division;
   divide_lines(parts, size, std::vector<bool>(12, true), std::vector<bool>(12, false), division, context);
-  const LinePoints lines = make_line_points(parts, division);
+  const LinePoints lines = make_line_points(parts, division, context);
   const SurfaceSupport support(parts, parts.regions[0]);
   const RegionBorder border = find_border(parts, parts.regions[0], lines, division);
   const RegionGrid good = SurfaceFront(support, size).grid(border, context);

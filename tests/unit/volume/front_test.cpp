@@ -305,5 +305,28 @@ TEST(Front, random_rooms_with_any_sizes) {
   EXPECT_LE(static_cast<double>(by_delaunay), 1e-3 * static_cast<double>(cells));
 }
 
+/// No room between the shells for cells of a fair shape: Delaunay fills it, and that is said.
+TEST(VolumeFront, F17_much_by_delaunay_is_worth_a_warning_with_a_place) {
+  for (const double gap : {0.3, 0.001}) {
+    SCOPED_TRACE(gap);
+    Facets body = fixtures::sphere_facets(2);
+    body.add(fixtures::sphere_facets(2), {}, 1 - gap);
+    BoundaryGrid grid = recovered(fixtures::to_model(body));
+    Context context;
+    std::vector<std::string> warnings;
+    context.on_log = [&](LogLevel level, const std::string& message) {
+      if (level == LogLevel::warning) warnings.push_back(message);
+    };
+    const FrontReport report = fill_by_front(grid, Funnel({}, 0.2, 0, 0.2), context);
+    const double share = double(report.closed_by_delaunay) / double(grid.complex.num_live());
+    EXPECT_EQ(share > 0.01, !warnings.empty()) << share;
+    EXPECT_EQ(report.delaunay_places.empty(), report.closed_by_delaunay == 0);
+    if (gap < 0.1) ASSERT_GT(share, 0.01);
+    if (warnings.empty()) continue;
+    EXPECT_NE(warnings[0].find("put in by constrained Delaunay"), std::string::npos) << warnings[0];
+    EXPECT_NEAR(length(report.delaunay_places[0].at), 1, 0.1) << "between the shells";
+  }
+}
+
 }  // namespace
 }  // namespace delfront

@@ -41,27 +41,33 @@ TEST(HardSurfaces, chazelle_polyhedra) {
     }
 }
 
-TEST(HardSurfaces, needles) {
-  for (const double width : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    SCOPED_TRACE(width);
-    const Facets spike = fixtures::tetrahedron_facets({0, 0, 0}, {width, 0, 0}, {0, width, 0}, {0.3, 0.2, 1});
-    expect_recovered(spike, spike.volume());
-    Facets inside = box_facets({-1, -1, -1}, {2, 2, 2});
-    inside.add(spike);
-    EXPECT_EQ(expect_recovered(inside, 27).grid.num_regions, 2u);
-    Facets star = box_facets({-1, -1, -1}, {1, 1, 1});
-    for (int i = 0; i < 8; ++i) {  // needles that nearly meet at the origin
-      const double angle = 0.3 + 2 * std::numbers::pi * i / 8;
-      const Point along{std::cos(angle), std::sin(angle), 0.1 * i - 0.35};
-      const Point side{-width * along.y, width * along.x, 0};
-      Facets needle = fixtures::tetrahedron_facets(0.01 * along, 0.9 * along, 0.9 * along + side,
-                                                   0.9 * along + 0.5 * side + Point{0, 0, width});
-      if (needle.volume() < 0) needle.turn();
-      star.add(needle);
-    }
-    EXPECT_EQ(expect_recovered(star, 8).grid.num_regions, 9u);
+/// A needle of a width, alone, in a box, and eight that nearly meet.
+void expect_needles(double width) {
+  SCOPED_TRACE(width);
+  const Facets spike = fixtures::tetrahedron_facets({0, 0, 0}, {width, 0, 0}, {0, width, 0}, {0.3, 0.2, 1});
+  expect_recovered(spike, spike.volume());
+  Facets inside = box_facets({-1, -1, -1}, {2, 2, 2});
+  inside.add(spike);
+  EXPECT_EQ(expect_recovered(inside, 27).grid.num_regions, 2u);
+  Facets star = box_facets({-1, -1, -1}, {1, 1, 1});
+  for (int i = 0; i < 8; ++i) {  // they nearly meet at the origin
+    const double angle = 0.3 + 2 * std::numbers::pi * i / 8;
+    const Point along{std::cos(angle), std::sin(angle), 0.1 * i - 0.35};
+    const Point side{-width * along.y, width * along.x, 0};
+    Facets needle = fixtures::tetrahedron_facets(0.01 * along, 0.9 * along, 0.9 * along + side,
+                                                 0.9 * along + 0.5 * side + Point{0, 0, width});
+    if (needle.volume() < 0) needle.turn();
+    star.add(needle);
   }
+  EXPECT_EQ(expect_recovered(star, 8).grid.num_regions, 9u);
 }
+
+TEST(HardSurfaces, needles) {
+  for (const double width : {1e-1, 1e-2, 1e-3}) expect_needles(width);
+}
+TEST(HardSurfaces, needles_of_a_ten_thousandth) { expect_needles(1e-4); }
+TEST(HardSurfaces, needles_of_a_hundred_thousandth) { expect_needles(1e-5); }
+TEST(HardSurfaces, needles_of_a_millionth) { expect_needles(1e-6); }
 
 /// A wedge over the x axis, opening by `degrees`, cut into n slices along it.
 Facets wedge(double degrees, int n) {
