@@ -41,7 +41,7 @@ Point place_of(const TopoDS_Shape& shape) {
 }
 
 /// ShapeFix names what it did by keys as FixWire.FixReorder.MSG0 or FixAdvFace.FixMissingSeam.MSG0.
-std::string kind_of(const TopoDS_Shape& shape, const Message_Msg& message) {
+std::string kind_of(const Message_Msg& message) {
   const TCollection_AsciiString text(Message_Msg(message).Get());
   std::string key = text.ToCString();
   const std::size_t fix = key.rfind(".Fix");
@@ -53,7 +53,6 @@ std::string kind_of(const TopoDS_Shape& shape, const Message_Msg& message) {
     if (std::isupper(static_cast<unsigned char>(c)) && !kind.empty()) kind += '_';
     kind += char(std::tolower(static_cast<unsigned char>(c)));
   }
-  static_cast<void>(shape);
   return "fixed_" + kind;
 }
 
@@ -78,7 +77,7 @@ void note_messages(const Handle(ShapeExtend_MsgRegistrator) & messages, CadRepor
   for (ShapeExtend_DataMapIteratorOfDataMapOfShapeListOfMsg it(messages->MapShape()); it.More(); it.Next())
     for (Message_ListIteratorOfListOfMsg msg(it.Value()); msg.More(); msg.Next()) {
       const Point at = place_of(it.Key());
-      const std::string kind = kind_of(it.Key(), msg.Value());
+      const std::string kind = kind_of(msg.Value());
       std::string words = kind;
       std::replace(words.begin(), words.end(), '_', ' ');
       report.repairs.push_back(

@@ -159,10 +159,10 @@ class OtherSurfaceOf final : public SmoothSurface {
     for (int i = 0; i <= kSamples; ++i)
       for (int j = 0; j <= kSamples; ++j) extent.add(other_->derivatives(between(used, i, j)).at);
     const double near = kPoint * extent.diagonal();
-    sides_.v_low = is_point(used, near, [&](int i) { return Point2{between(used, i, 0).x, box_.low.y}; });
-    sides_.v_high = is_point(used, near, [&](int i) { return Point2{between(used, i, 0).x, box_.high.y}; });
-    sides_.u_low = is_point(used, near, [&](int i) { return Point2{box_.low.x, between(used, 0, i).y}; });
-    sides_.u_high = is_point(used, near, [&](int i) { return Point2{box_.high.x, between(used, 0, i).y}; });
+    sides_.v_low = is_point(near, [&](int i) { return Point2{between(used, i, 0).x, box_.low.y}; });
+    sides_.v_high = is_point(near, [&](int i) { return Point2{between(used, i, 0).x, box_.high.y}; });
+    sides_.u_low = is_point(near, [&](int i) { return Point2{box_.low.x, between(used, 0, i).y}; });
+    sides_.u_high = is_point(near, [&](int i) { return Point2{box_.high.x, between(used, 0, i).y}; });
   }
   ParameterBox box() const override { return box_; }
   std::array<double, 2> period() const override { return period_; }
@@ -174,7 +174,7 @@ class OtherSurfaceOf final : public SmoothSurface {
     return {b.low.x + i * (b.high.x - b.low.x) / kSamples, b.low.y + j * (b.high.y - b.low.y) / kSamples};
   }
   template <class Place>
-  bool is_point(const ParameterBox&, double near, const Place& place) const {
+  bool is_point(double near, const Place& place) const {
     if (!std::isfinite(place(0).x) || !std::isfinite(place(0).y)) return false;
     const Point first = other_->derivatives(place(0)).at;
     for (int i = 1; i <= kSamples; ++i)
