@@ -13,6 +13,7 @@
 #include "delfront/io.hpp"
 #include "delfront/model.hpp"
 #include "delfront/surface_check.hpp"
+#include "geometry_facts.hpp"
 #include "pipeline/boundaries.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "pipeline/planar_job.hpp"
@@ -43,6 +44,7 @@ struct Inspected {
   std::vector<Finding> findings;  ///< of the surface, or of the grid
   QualityReport quality;          ///< of a valid grid
   bool is_of_lines = false;       ///< lines in the plane
+  CadReport cad;                  ///< of a CAD file
   Brep brep;                      ///< smooth geometry; the surface is then its grid of usual sizes
   BrepGridReport brep_grid;
   bool is_usable() const { return is_grid || is_of_lines ? !has_errors(findings) : surface.can_bound_volume; }
@@ -50,8 +52,8 @@ struct Inspected {
 
 Inspected inspect(const std::string& path, const std::string& format, Context& context) {
   Inspected result;
-  if (is_geometry_file(path)) {
-    result.brep = read_brep(path);
+  if (is_smooth_file(path)) {
+    result.brep = read_brep(path, context, result.cad);
     result.mesh = grid_to_look_at(result.brep, context, result.brep_grid);
   } else {
     result.mesh = read_mesh(path, context, format);
@@ -76,64 +78,6 @@ Inspected inspect(const std::string& path, const std::string& format, Context& c
   result.findings = result.surface.findings;
   result.mesh = surface_mesh(model);  // the facts are those of the welded, triangulated surface
   return result;
-}
-
-double length_of(const BrepEdge& edge) {
-  constexpr int kPieces = 200;
-  double sum = 0;
-  for (int i = 0; i < kPieces && !edge.is_degenerate(); ++i) {
-    const double step = (edge.range[1] - edge.range[0]) / kPieces;
-    sum += distance(edge.curve->at(edge.range[0] + i * step), edge.curve->at(edge.range[0] + (i + 1) * step));
-  }
-  return sum;
-}
-
-std::string ends_of(const Brep& brep, const BrepEdge& edge) {
-  if (!edge.corners[0].is_valid()) return "closed";
-  const auto name = [&](CornerId c) {
-    return brep.corners[c].name.empty() ? fmt::format("corner {}", c.value + 1) : brep.corners[c].name;
-  };
-  return fmt::format("{} to {}", name(edge.corners[0]), name(edge.corners[1]));
-}
-
-/// Corners, edges and faces with what they are called in the grid.
-Json brep_json(const Inspected& it) {
-  Json corners = Json::array(), edges = Json::array(), faces = Json::array();
-  for (const BrepCorner& c : it.brep.corners) corners.push_back({{"name", c.name}, {"at", {c.at.x, c.at.y, c.at.z}}});
-  for (const BrepEdge& e : it.brep.edges)
-    if (!e.is_degenerate())
-      edges.push_back({{"name", e.name}, {"length", length_of(e)}, {"ends", ends_of(it.brep, e)}});
-  for (std::size_t f = 0; f < it.brep.faces.size(); ++f) {
-    const BrepFace& face = it.brep.faces[FaceId(f)];
-    const BrepFaceReport& grid = it.brep_grid.faces[f];
-    faces.push_back({{"name", face.name},
-                     {"kind", face.kind},
-                     {"loops", face.loops.size()},
-                     {"triangles", grid.triangles},
-                     {"mapped", grid.is_mapped}});
-  }
-  return {{"corners", corners}, {"edges", edges}, {"faces", faces}};
-}
-
-void print_brep(const Inspected& it) {
-  constexpr std::size_t kShown = 40;
-  std::size_t shown = 0, edges = 0;
-  for (const BrepEdge& e : it.brep.edges) edges += !e.is_degenerate();
-  fmt::print("geometry       {} corners, {} edges, {} faces\n", it.brep.corners.size(), edges, it.brep.faces.size());
-  for (const BrepCorner& c : it.brep.corners)
-    if (!c.name.empty() && shown++ < kShown)
-      fmt::print("corner         {:<20} {:g} {:g} {:g}\n", c.name, c.at.x, c.at.y, c.at.z);
-  shown = 0;
-  for (const BrepEdge& e : it.brep.edges)
-    if (!e.name.empty() && shown++ < kShown)
-      fmt::print("edge           {:<20} length {:.6g}, {}\n", e.name, length_of(e), ends_of(it.brep, e));
-  for (std::size_t f = 0; f < std::min(kShown, it.brep.faces.size()); ++f) {
-    const BrepFace& face = it.brep.faces[FaceId(f)];
-    const BrepFaceReport& grid = it.brep_grid.faces[f];
-    fmt::print("face           {:<20} {}{} loop{}, {} triangles of usual size, angles from {:.1f} deg\n", face.name,
-               face.kind.empty() ? "" : face.kind + ", ", face.loops.size(), face.loops.size() == 1 ? "" : "s",
-               grid.triangles, grid.min_angle_deg);
-  }
 }
 
 void print_surface_facts(const SurfaceReport& r) {
@@ -171,7 +115,7 @@ Json facts_json(const std::string& path, const Inspected& it) {
     json["findings"] = to_json(it.findings);
   } else {
     json["surface"] = to_json(it.surface);
-    if (!it.brep.faces.empty()) json["geometry"] = brep_json(it);
+    if (!it.brep.faces.empty()) json["geometry"] = geometry_json(it.brep, it.brep_grid, it.cad);
   }
   return json;
 }
@@ -287,7 +231,7 @@ class InfoCommand : public Command {
  private:
   void print(const Inspected& it) const {
     fmt::print("file           {}\n", file_);
-    if (!it.brep.faces.empty()) print_brep(it);
+    if (!it.brep.faces.empty()) print_geometry(it.brep, it.brep_grid, it.cad);
     print_mesh_facts(it.mesh);
     if (!it.is_grid && !it.is_of_lines) print_surface_facts(it.surface);
     if (it.is_grid && it.is_usable())

@@ -69,7 +69,8 @@ class JobCommand : public Command {
     app->allow_extras();
     app->footer(words.footer);
     app->add_option("FILE", files_,
-                    "surface files or smooth geometry (.geom.toml), gridded together; or a job file (.toml, .json)");
+                    "surface files or smooth geometry (.geom.toml, .step, .iges, .brep, .egads), gridded together; or "
+                    "a job file (.toml, .json)");
     for (const OptionRow& row : option_table())
       if (!row.flags.empty()) add_row_flag(row);
     for (const Shorthand& shorthand : shorthand_table()) add_shorthand(shorthand);

@@ -96,6 +96,7 @@ using FaceId = Id<struct FaceTag>;
 struct BrepCorner {
   Point at;
   std::string name;
+  double tolerance = 0;  ///< of it and the ends of edges there; below the Brep's: that
 };
 
 /// @brief A part of a smooth curve between two corners, or a closed one: becomes a curve of Model.
@@ -105,6 +106,7 @@ struct BrepEdge {
   std::array<CornerId, 2> corners{};  ///< at the range's ends; twice the same: closed there; both invalid: closed,
                                       ///< without a corner
   std::string name;
+  double tolerance = 0;  ///< between the curve and faces' surfaces along it; below the Brep's: that
   bool is_degenerate() const { return curve == nullptr; }  ///< one point in space, a line in the parameter plane
 };
 
@@ -123,8 +125,9 @@ struct BrepFace {
   std::shared_ptr<const SmoothSurface> surface;
   bool is_reversed = false;  ///< its triangles face against the surface's normal
   std::vector<std::vector<BrepUse>> loops;
-  std::string name;  ///< faces of one name are one patch of Model
-  std::string kind;  ///< of the patch: "wall", …
+  std::string name;      ///< faces of one name are one patch of Model
+  std::string kind;      ///< of the patch: "wall", …
+  double tolerance = 0;  ///< between the surface and its edges; below the Brep's: that
 };
 
 /// @brief Smooth geometry, bounded: what CAD, splines and analytic shapes give (D1).
@@ -134,7 +137,8 @@ struct Brep {
   Array<CornerId, BrepCorner> corners;
   Array<EdgeId, BrepEdge> edges;
   Array<FaceId, BrepFace> faces;
-  double tolerance = 0;  ///< between what should coincide; 0: 1e-9 of the diagonal
+  double tolerance =
+      0;  ///< between what should coincide; 0: 1e-9 of the diagonal; corners, edges and faces may have more
 };
 
 /// @brief What makes a Brep unfit for gridding: ids that do not exist, ranges, loops that do not close, parameter

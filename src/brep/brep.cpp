@@ -69,7 +69,8 @@ class Checker {
     const bool is_closed = !edge.corners[0].is_valid();
     for (std::size_t k = 0; k < 2; ++k) {
       const Point wanted = is_closed ? ends[0] : brep_.corners[edge.corners[k]].at;
-      if (!(distance(ends[k], wanted) <= tolerance_))
+      const double corner = is_closed ? 0 : brep_.corners[edge.corners[k]].tolerance;
+      if (!(distance(ends[k], wanted) <= std::max({tolerance_, edge.tolerance, corner})))
         throw InputError(fmt::format("{} ends {:g} away from its corner", edge_name(e), distance(ends[k], wanted)),
                          {{ends[k], {std::uint32_t(e)}}});
     }
@@ -83,7 +84,7 @@ class Checker {
     for (const auto& loop : face.loops) {
       if (loop.empty()) throw InputError(name + " has a loop without edges");
       for (const BrepUse& use : loop) check_use(face, name, use);
-      check_loop(name, loop);
+      check_loop(face, name, loop);
     }
   }
 
@@ -95,9 +96,10 @@ class Checker {
       const double t = edge.range[0] + (edge.range[1] - edge.range[0]) * i / kSamples;
       const Point at = edge.is_degenerate() ? brep_.corners[edge.corners[0]].at : edge.curve->at(t);
       const double away = distance(at, face.surface->at(use.curve->at(t)));
-      if (!(away <= 2 * tolerance_))
+      const double allowed = tolerance_of(face, use);
+      if (!(away <= 2 * allowed))
         throw InputError(fmt::format("{}: the parameter curve of {} lies {:g} away from the edge (tolerance {:g})",
-                                     name, edge_name(use.edge.index()), away, tolerance_),
+                                     name, edge_name(use.edge.index()), away, allowed),
                          {{at, {use.edge.value}}});
     }
   }
@@ -106,7 +108,26 @@ class Checker {
     return use.curve->at(brep_.edges[use.edge].range[is_first == use.is_reversed ? 1 : 0]);
   }
 
-  void check_loop(const std::string& name, const std::vector<BrepUse>& loop) const {
+  double tolerance_of(const BrepFace& face, const BrepUse& use) const {
+    const BrepEdge& edge = brep_.edges[use.edge];
+    const double corner = edge.is_degenerate() ? brep_.corners[edge.corners[0]].tolerance : 0;
+    return std::max({tolerance_, face.tolerance, edge.tolerance, corner});
+  }
+
+  /// Two ends in the parameter plane may be apart by what the corner's tolerance is there.
+  bool meet_in_space(const BrepFace& face, const BrepUse& last, Point2 a, const BrepUse& next, Point2 b) const {
+    double allowed = std::max(tolerance_of(face, last), tolerance_of(face, next));
+    for (const BrepUse* use : {&last, &next})
+      for (const CornerId c : brep_.edges[use->edge].corners)
+        if (c.is_valid()) allowed = std::max(allowed, brep_.corners[c].tolerance);
+    const Point at = face.surface->at(a);
+    for (const double f : {0.25, 0.5, 0.75, 1.0})
+      if (!(distance(at, face.surface->at({a.x + f * (b.x - a.x), a.y + f * (b.y - a.y)})) <= 2 * allowed))
+        return false;
+    return true;
+  }
+
+  void check_loop(const BrepFace& face, const std::string& name, const std::vector<BrepUse>& loop) const {
     Box extent;
     for (const BrepUse& use : loop)
       for (int i = 0; i <= kSamples; ++i) {
@@ -116,12 +137,15 @@ class Checker {
       }
     const Point size = extent.high - extent.low;
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Point2 a = end_of(loop[i], false), b = end_of(loop[(i + 1) % loop.size()], true);
-      if (std::abs(a.x - b.x) > kLoopTolerance * size.x || std::abs(a.y - b.y) > kLoopTolerance * size.y)
+      const BrepUse& next = loop[(i + 1) % loop.size()];
+      const Point2 a = end_of(loop[i], false), b = end_of(next, true);
+      const bool is_apart =
+          std::abs(a.x - b.x) > kLoopTolerance * size.x || std::abs(a.y - b.y) > kLoopTolerance * size.y;
+      if (is_apart && !meet_in_space(face, loop[i], a, next, b))
         throw InputError(fmt::format("{}: a loop does not close in the parameter plane after {}: ({:g}, {:g}) to "
                                      "({:g}, {:g}); a seam is an edge that is used twice",
                                      name, edge_name(loop[i].edge.index()), a.x, a.y, b.x, b.y),
-                         {{brep_.faces[FaceId(std::size_t(0))].surface->at(a), {loop[i].edge.value}}});
+                         {{face.surface->at(a), {loop[i].edge.value}}});
     }
   }
 

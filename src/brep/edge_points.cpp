@@ -9,6 +9,7 @@ namespace delfront {
 namespace {
 
 constexpr std::size_t kLeastPanels = 32, kMostPanels = std::size_t(1) << 22;
+constexpr std::size_t kEnoughPanels = std::size_t(1) << 13;  ///< for densities that jump, and never converge
 constexpr double kPanelsPerSide = 8;
 constexpr double kConverged = 1e-4;  ///< change of the integral, of itself
 constexpr double kAlmost = 1e-9;     ///< of where one more part is taken, so that equal curves get equal numbers
@@ -58,7 +59,8 @@ std::vector<double> divide_curve(const std::function<CurveSample(double)>& sampl
     density = sample_density(sample, range, size, panels);
     sum = integrate(density, (range[1] - range[0]) / double(panels));
     const double now = sum.back();
-    if (std::abs(now - before) <= kConverged * now && double(panels) >= kPanelsPerSide * now) break;
+    const bool is_fine = std::abs(now - before) <= kConverged * now || panels >= kEnoughPanels;
+    if (is_fine && double(panels) >= kPanelsPerSide * now) break;
     before = now;
   }
   const double all = sum.back();

@@ -7,6 +7,8 @@
 namespace delfront {
 namespace {
 
+constexpr double kSharp = 1.5;        ///< radians along a side
+constexpr double kLowShare = 4;       ///< of the tolerance of edges: triangles as low as that face as they may
 constexpr double kWellMapped = 1e-4;  ///< sine between tangents from where their cross product is good enough
 
 Point normal_of(const SmoothSurface& surface, Point2 uv) {
@@ -14,6 +16,11 @@ Point normal_of(const SmoothSurface& surface, Point2 uv) {
   const Point n = cross(s.u, s.v);
   const double size = length(n);
   return size > kWellMapped * length(s.u) * length(s.v) && size > 0 ? n / size : surface.normal(uv);
+}
+
+/// Whether the surface bends at a point so sharply that its normal there says nothing of triangles of that length.
+bool is_sharper(const SmoothSurface& surface, const FacePoint& point, double side) {
+  return largest_curvature(surface.derivatives(point.uv)) * side > kSharp;
 }
 
 /// The same place as uv, as many periods on as brings it nearest to another.
@@ -55,7 +62,7 @@ Point2 middle_of(const SmoothSurface& surface, const FaceGrid& grid, const std::
 
 }  // namespace
 
-void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid) {
+void check_face_grid(const BrepFace& face, double most_angle, double tolerance, FaceGrid& grid) {
   if (!grid.gave_up.empty()) return;
   if (grid.triangles.empty()) return grid.fail("there are no triangles", grid.points[0].at);
   check_sides(grid);
@@ -63,6 +70,7 @@ void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid) {
   std::vector<Point> normal(grid.points.size());
   for (std::size_t i = 0; i < normal.size(); ++i)
     if (!grid.points[i].is_pole) normal[i] = normal_of(surface, grid.points[i].uv);
+  const double least_allowed = std::cos(most_angle);
   double least = 1;
   Point worst_at;
   for (const auto& t : grid.triangles) {
@@ -70,13 +78,18 @@ void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid) {
     const Point twice = cross(b - a, c - a), middle = (a + b + c) / 3.0;
     const double size = length(twice);
     if (!(size > 0)) return grid.fail("a triangle has no area", middle);
+    const SurfaceTangents there = surface.tangents(middle_of(surface, grid, t, middle));
+    const Point n = cross(there.u, there.v);
+    const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
     for (const std::uint32_t p : t) {
       if (grid.points[p].is_pole || dot(twice, normal[p]) >= least * size) continue;
+      if (dot(twice, normal[p]) < least_allowed * size &&
+          (size < kLowShare * tolerance * longest ||
+           (dot(twice, n) > 0 && is_sharper(surface, grid.points[p], longest))))
+        continue;
       least = dot(twice, normal[p]) / size;
       worst_at = middle;
     }
-    const SurfaceTangents there = surface.tangents(middle_of(surface, grid, t, middle));
-    const Point n = cross(there.u, there.v);
     const double away = length(n) > 0 ? std::abs(dot(there.at - middle, n)) / length(n) : distance(there.at, middle);
     grid.largest_distance = std::max(grid.largest_distance, away);
   }

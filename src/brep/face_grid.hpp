@@ -61,6 +61,7 @@ void grid_directly(const Brep& brep, const BrepFace& face, const Array<EdgeId, E
                    const WantedSize& size, FaceGrid& grid, Context& context);
 
 /// @brief Normals of triangles against those of the surface at their corners, and distances of middles.
-void check_face_grid(const BrepFace& face, double most_angle, FaceGrid& grid);
+/// @param tolerance  of the face's edges: triangles about as low as that are not asked for their normal
+void check_face_grid(const BrepFace& face, double most_angle, double tolerance, FaceGrid& grid);
 
 }  // namespace delfront

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kGoal = 0.345;  ///< squared sine of 36 degrees
 constexpr int kRounds = 4, kSweeps = 4, kMoves = 8, kDirections = 8;
-constexpr double kLeastGain = 1e-3;   ///< of a squared sine
+constexpr std::size_t kMostLifts = 1000, kTrianglesPerLift = 20;  ///< searches a face: that many and one for so many
+constexpr double kLeastGain = 1e-3;                               ///< of a squared sine
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
 constexpr double kAgree = 0.3;        ///< least cosine between triangles and the surface at their corners
 constexpr double kMostLonger = 1.3;   ///< sides that a collapse makes, of the longest there
@@ -33,6 +34,7 @@ class SmallAngles {
       : surface_(surface), kept_(kept_sides), grid_(grid) {}
 
   void run() {
+    lifts_left_ = kMostLifts + grid_.triangles.size() / kTrianglesPerLift;
     for (int round = 0; round < kRounds && select(); ++round) {
       links_.link(std::move(triangles_), grid_.points.size());
       std::size_t done = 0;
@@ -207,6 +209,8 @@ class SmallAngles {
   bool lift(std::uint32_t p) {
     FacePoint& moved = grid_.points[p];
     if (moved.vertex != kNoVertex || !links_.ring(p, ring_)) return false;
+    if (lifts_left_ == 0) return false;
+    --lifts_left_;
     double reach = 0;
     for (const std::uint32_t q : ring_.points) reach += 0.25 * distance(at(q), moved.at) / double(ring_.points.size());
     Point normal = surface_.normal(moved.uv);
@@ -241,6 +245,7 @@ class SmallAngles {
 
   const SmoothSurface& surface_;
   const std::vector<std::uint64_t>& kept_;
+  std::size_t lifts_left_ = 0;
   FaceGrid& grid_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<std::size_t> given_;  ///< by triangle: the grid's

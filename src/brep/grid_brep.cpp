@@ -24,6 +24,10 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
+constexpr double kFairAngleDeg = 3;          ///< below, another way is tried
+constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
+constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
+constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
 
 class BrepGridder {
  public:
@@ -37,7 +41,7 @@ class BrepGridder {
         wanted_(working_, options.most_turn_deg * kDegree, options.least_size),
         grids_(brep.faces.size()),
         failures_(brep.faces.size(), 0) {
-    wanted_.find_tips(brep);
+    wanted_.look_at(brep);
     lowered_.growth = kGrowth;
   }
 
@@ -90,26 +94,53 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped, else directly in space, else in charts that are far from lengths in space.
+  /// Mapped; else directly in space, or in charts that are far from lengths in space where that gives better angles.
+  /// Along long borders those charts come first.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
     const FaceGrid border = make_face_border(brep_, face, edges_);
     const std::vector<std::uint64_t> kept_sides = kept_sides_of(border);
+    // a surface that folds has no grid that faces as it does; whether one crosses itself is told exactly afterwards
+    const bool gives_way = options_.checks_crossings && failures_[f.index()] >= kFolded;
+    const double most_angle = gives_way ? 2 * std::numbers::pi : options_.normal_angle_deg * kDegree;
     const auto fill = [&](const auto& gridder) {
       grid = border;
       gridder();
       lift_small_angles(*face.surface, kept_sides, grid);
-      check_face_grid(face, options_.normal_angle_deg * kDegree, grid);
+      check_face_grid(face, most_angle, tolerance_of(face), grid);
       return grid.gave_up.empty();
     };
     const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
     if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
     if (options_.method == BrepOptions::Method::mapped) return;
     const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
-    const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
-    if (!is_done && options_.method == BrepOptions::Method::choose) fill([&] { map(true); });
-    if (!grid.is_mapped) grid.why_direct = why;
+    const auto grid_in_space = [&] {
+      const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
+      grid.why_direct = why;
+      return is_done;
+    };
+    const bool is_free = options_.method == BrepOptions::Method::choose;
+    if (is_free && border.points.size() > kMostForDirect && fill([&] { map(true); })) return;
+    if (grid_in_space() && smallest_angle_of(grid) > kFairAngleDeg) return;
+    if (!is_free) return;
+    const FaceGrid direct = grid;
+    if (!fill([&] { map(true); }) || (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
+      grid = direct;
+  }
+
+  double tolerance_of(const BrepFace& face) const {
+    double most = face.tolerance;
+    for (const auto& loop : face.loops)
+      for (const BrepUse& use : loop) most = std::max(most, brep_.edges[use.edge].tolerance);
+    return most;
+  }
+
+  static double smallest_angle_of(const FaceGrid& grid) {
+    double least = 180;
+    for (const auto& t : grid.triangles)
+      least = std::min(least, smallest_angle_deg(grid.points[t[0]].at, grid.points[t[1]].at, grid.points[t[2]].at));
+    return least;
   }
 
   void lower_at(Point at) {
@@ -118,14 +149,14 @@ class BrepGridder {
     ++report_.sizes_lowered;
   }
 
-  /// Sizes are lowered at the place, the next time all over the face.
+  /// Sizes are lowered at the place, each third time all over the face.
   void fail(FaceId f, const std::string& why, Point at) {
     const BrepFace& face = brep_.faces[f];
     why_ = face.name.empty() ? fmt::format("face {}: {}", f.value, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
     lower_at(at);
     const auto& points = grids_[f].points;
-    if (failures_[f.index()]++ > 0)
+    if (++failures_[f.index()] % kAllOver == 0)
       for (std::size_t i = 0; i < points.size(); i += points.size() / kPlacesOfFace + 1) lower_at(points[i].at);
   }
 

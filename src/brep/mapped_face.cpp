@@ -215,13 +215,13 @@ class ChartedPart {
   }
 
  private:
-  /// Copies of a seam's point that meet in a polar chart are one, and so is the whole of a pole.
+  /// Copies of a point that meet are one: those of a seam in a polar chart, those of a slit anywhere; so is a pole.
   VertexIndex chart_point(std::uint32_t p) {
     if (const auto known = number_.find(p); known != number_.end()) return known->second;
     const FacePoint& point = grid_.points[p];
     Point2 xy = rounded(chart_.to_chart(point.uv));
     if (point.is_pole && chart_.is_polar()) xy = {0, 0};
-    if (chart_.is_polar() && point.vertex != kNoVertex) {
+    if (point.vertex != kNoVertex) {
       const auto [first, last] = copies_.equal_range(point.vertex);
       for (auto it = first; it != last; ++it) {
         const Point2 other = domain_.points[VertexId(it->second)];

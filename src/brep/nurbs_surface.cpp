@@ -10,6 +10,8 @@ namespace {
 constexpr double kSamePlace = 1e-12;       ///< of the extent of the control points
 constexpr double kSameDirection = 1e-9;    ///< of the largest derivative
 constexpr std::size_t kMostSamples = 400;  ///< along a side
+constexpr double kSettled =
+    1e-12;  ///< of the squared distance: a step of Newton's method that gains no more is the last
 constexpr int kMostSteps = 40, kMostHalvings = 10;
 
 class NurbsSurface final : public SmoothSurface {
@@ -198,6 +200,7 @@ Point2 NurbsSurface::closest(Point p, Point2 start) const {
     const Point r = s.at - p;
     Point2 by = newton_step(s, r, u.holds(uv.x, -dot(r, s.u)), v.holds(uv.y, -dot(r, s.v)));
     bool is_nearer = false;
+    const double before = best;
     for (int halving = 0; halving < kMostHalvings && !is_nearer; ++halving) {
       const Point2 next = {u.kept(uv.x + by.x), v.kept(uv.y + by.y)};
       const SurfaceDerivatives there = derivatives(next);
@@ -209,7 +212,7 @@ Point2 NurbsSurface::closest(Point p, Point2 start) const {
       uv = next;
       s = there;
     }
-    if (!is_nearer) break;
+    if (!is_nearer || before - best <= kSettled * before) break;
   }
   return uv;
 }

@@ -4,7 +4,9 @@
 namespace delfront {
 namespace {
 
-constexpr int kSamples = 24;          ///< each way
+constexpr int kSamples = 24;            ///< each way
+constexpr double kFloorShare = 1e-3;    ///< of the diagonal
+constexpr double kMostLowering = 0.05;  ///< of the least size that is asked for, where that gives less
 constexpr double kTipReach = 0.2;     ///< of a face's extent from its tip: sizes there are not lowered below about that
 constexpr double kSmoothPole = 0.99;  ///< least cosine between normals round a pole that is no tip
 
@@ -23,6 +25,22 @@ double reach_of(const Brep& brep, const BrepFace& face, Point from) {
 }
 
 }  // namespace
+
+void WantedSize::look_at(const Brep& brep) {
+  Box box;
+  std::vector<Point> at;
+  for (const BrepEdge& edge : brep.edges)
+    for (int i = 0; i <= kSamples && !edge.is_degenerate(); ++i) {
+      at.push_back(edge.curve->at(edge.range[0] + (edge.range[1] - edge.range[0]) * i / kSamples));
+      box.add(at.back());
+    }
+  std::vector<double> asked(at.size());
+  asked_.sizes(at, asked);
+  double floor = kFloorShare * box.diagonal();
+  for (const double h : asked) floor = std::min(floor, kMostLowering * h);
+  least_ = std::max(least_, floor);
+  find_tips(brep);
+}
 
 void WantedSize::find_tips(const Brep& brep) {
   for (const BrepFace& face : brep.faces)

@@ -19,8 +19,9 @@ class WantedSize {
 
   const SizeField& asked() const { return asked_; }
 
-  /// @brief Where surfaces come to a tip: bends are infinite there, sizes need not be nothing.
-  void find_tips(const Brep& brep);
+  /// @brief Where surfaces come to a tip: bends are infinite there, sizes need not be nothing. And how large all is:
+  /// what is sharper than that by far counts as a crease.
+  void look_at(const Brep& brep);
 
   /// @brief What is left of an asked size where so much is bent.
   double lowered(double asked, double curvature, Point at) const {
@@ -35,6 +36,7 @@ class WantedSize {
   bool is_lowered_on(const SmoothSurface& surface, const ParameterBox& box) const;
 
  private:
+  void find_tips(const Brep& brep);
   static constexpr double kTipShare = 0.8;  ///< of the distance from a tip: allowed there at least
   static constexpr double kTipCells = 0.6;  ///< of the asked size, as that distance
   struct Tip {
@@ -44,7 +46,7 @@ class WantedSize {
   const SizeField& asked_;
   double most_turn_;
   std::vector<Tip> tips_;
-  double least_;
+  double least_;  ///< no bend asks for less
 };
 
 }  // namespace delfront

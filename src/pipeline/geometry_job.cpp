@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
@@ -85,6 +87,28 @@ BrepOptions gridding_options(const Options& options) {
   return how;
 }
 
+/// The first of each kind, and how many more there are.
+void tell_notes(const std::vector<CadNote>& notes, const std::string& path, LogLevel level, Context& context) {
+  std::map<std::string, std::size_t> count;
+  for (const CadNote& note : notes) ++count[note.kind];
+  for (const CadNote& note : notes) {
+    const std::size_t all = std::exchange(count[note.kind], 0);
+    if (all == 0) continue;
+    context.log(level, fmt::format("{}: {}{}", path, note.message,
+                                   all > 1 ? fmt::format(" (and {} more of this kind)", all - 1) : ""));
+  }
+}
+
+void tell(const CadReport& cad, const std::string& path, Context& context) {
+  tell_notes(cad.repairs, path, LogLevel::info, context);
+  tell_notes(cad.suspicious, path, LogLevel::warning, context);
+  if (cad.free_edges > 0)
+    context.warn(
+        fmt::format("{}: {} edges bound one face only: the surface is open there, and bounds no volume unless "
+                    "something else closes it (the surface alone: --stop-after surface)",
+                    path, cad.free_edges));
+}
+
 }  // namespace
 
 std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook& look, const Options& options,
@@ -138,8 +162,16 @@ Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report)
   return grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report);
 }
 
-Brep read_brep(const std::string& path) {
-  Brep brep = build_brep(read_geometry(path), path);
+bool is_smooth_file(const std::string& path) { return is_geometry_file(path) || is_cad_file(path); }
+
+Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
+  Brep brep;
+  if (is_cad_file(path)) {
+    brep = read_cad(path, {}, cad, context);
+    tell(cad, path, context);
+  } else {
+    brep = build_brep(read_geometry(path), path);
+  }
   for (BrepFace& face : brep.faces)
     if (face.name.empty()) face.name = geometry_stem(path);
   return brep;
@@ -147,6 +179,7 @@ Brep read_brep(const std::string& path) {
 
 std::string geometry_stem(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
+  if (is_cad_file(path)) return std::filesystem::path(path).stem().string();
   return name.substr(0, name.size() - std::string(kGeometrySuffix).size());
 }
 

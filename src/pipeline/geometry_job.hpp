@@ -5,6 +5,7 @@
 
 #include "delfront/brep.hpp"
 #include "delfront/brep_sizes.hpp"
+#include "delfront/cad.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
@@ -42,8 +43,13 @@ Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& optio
 Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
                             Context& context, BrepRounds& report);
 
-/// @brief Read a file of geometry; faces without a name get the file's stem.
-Brep read_brep(const std::string& path);
+/// @brief Whether a file holds smooth geometry: as text (.geom.toml) or from CAD (.step, .iges, …).
+bool is_smooth_file(const std::string& path);
+
+/// @brief Read a file of geometry; faces without a name get the file's stem. What was mended and what is suspicious is
+/// told to the context's log.
+/// @param cad  filled where it is a CAD file
+Brep read_brep(const std::string& path, Context& context, CadReport& cad);
 
 /// @return the name of a file without folder and suffix
 std::string geometry_stem(const std::string& path);

@@ -11,6 +11,7 @@
 #include "delfront/geometry_text.hpp"
 #include "delfront/grid_check.hpp"
 #include "delfront/io.hpp"
+#include "pipeline/geometry_job.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/quantities.hpp"
 #include "pipeline/run.hpp"
@@ -104,7 +105,7 @@ void check_files(const Options& options) {
   std::size_t smooth = 0;
   for (std::size_t i = 0; i < options.input.files.size(); ++i) {
     const std::string& path = options.input.files[i];
-    if (is_geometry_file(path))
+    if (is_smooth_file(path))
       ++smooth;
     else
       with_place(options, fmt::format("input.files[{}]", i), [&] { format_of(path); });

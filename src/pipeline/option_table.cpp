@@ -150,8 +150,8 @@ std::vector<OptionRow> build_table() {
       [](auto& o) -> auto& { return o.stop_after; }, kStages));
   add(texts_row(
       "input.files", "", "",
-      "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …, smooth geometry (.geom.toml); or lines in the plane: "
-      "DAT, POLY, …",
+      "surfaces to grid together: STL, OBJ, PLY, OFF, VTP, …, smooth geometry (.geom.toml), CAD (.step .iges .brep "
+      ".egads); or lines in the plane: DAT, POLY, …",
       [](auto& o) -> auto& { return o.input.files; }));
   add(text_row(
       "input.units", "--units", "UNIT", "unit of the coordinates, where lengths in m, mm, in, ft are used",

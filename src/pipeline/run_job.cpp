@@ -52,7 +52,7 @@ void hash_file(InputFile& file) {
 }
 
 std::string stem_of(const std::string& path) {
-  if (is_geometry_file(path)) return geometry_stem(path);
+  if (is_smooth_file(path)) return geometry_stem(path);
   fs::path p(path);
   if (!p.has_filename()) p = p.parent_path();  // a folder's name that ends in '/'
   return p.stem().string();
@@ -70,7 +70,11 @@ void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& cont
 
 /// Smooth geometry has a grid to look at until sizes are known.
 void read_smooth(Run& run, const std::string& path) {
-  GeometryInput smooth{run.inputs.size(), read_brep(path), {}};
+  CadReport cad;
+  GeometryInput smooth{run.inputs.size(), read_brep(path, run.context, cad), {}};
+  Options& options = run.options;  // several files might differ in their units
+  if (options.input.units == "auto" && options.input.files.size() == 1 && metres_per_unit(cad.unit) > 0)
+    options.input.units = cad.unit;
   smooth.look = look_at_brep(smooth.brep, run.context);
   run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
   run.smooth.push_back(std::move(smooth));
@@ -81,7 +85,7 @@ void read_inputs(Run& run) {
   const std::vector<std::string>& files = run.options.input.files;
   for (std::size_t i = 0; i < files.size(); ++i) {
     run.context.progress("read", i, files.size(), "files");
-    if (is_geometry_file(files[i]))
+    if (is_smooth_file(files[i]))
       read_smooth(run, files[i]);
     else
       run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mending: first what is not valid as it is, then faces whose edges are free are sewn, with as small a tolerance as
+// closes most. Nothing is done to a part that is whole.
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepCheck_Analyzer.hxx>
+#include <BRepLib.hxx>
+#include <BRepTools_ReShape.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Message_ListIteratorOfListOfMsg.hxx>
+#include <Message_Msg.hxx>
+#include <ShapeBuild_ReShape.hxx>
+#include <ShapeExtend_DataMapIteratorOfDataMapOfShapeListOfMsg.hxx>
+#include <ShapeExtend_MsgRegistrator.hxx>
+#include <ShapeFix_Shape.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "fmt/format.h"
+#include "geometry.hpp"
+#include "part.hpp"
+
+namespace delfront::cad {
+namespace {
+
+constexpr double kSewShares[] = {1e-7, 1e-6, 1e-5, 1e-4};  ///< of the diagonal, one after the other
+
+Point place_of(const TopoDS_Shape& shape) {
+  for (TopExp_Explorer v(shape, TopAbs_VERTEX); v.More(); v.Next())
+    return point_of(BRep_Tool::Pnt(TopoDS::Vertex(v.Current())));
+  return {};
+}
+
+/// ShapeFix names what it did by keys as FixWire.FixReorder.MSG0 or FixAdvFace.FixMissingSeam.MSG0.
+std::string kind_of(const Message_Msg& message) {
+  const TCollection_AsciiString text(Message_Msg(message).Get());
+  std::string key = text.ToCString();
+  const std::size_t fix = key.rfind(".Fix");
+  if (fix == std::string::npos) return "mended";
+  key = key.substr(fix + 4);
+  key = key.substr(0, key.find('.'));
+  std::string kind;
+  for (const char c : key) {
+    if (std::isupper(static_cast<unsigned char>(c)) && !kind.empty()) kind += '_';
+    kind += char(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return "fixed_" + kind;
+}
+
+const char* word_for(const TopoDS_Shape& shape) {
+  switch (shape.ShapeType()) {
+    case TopAbs_FACE:
+      return "a face";
+    case TopAbs_WIRE:
+      return "a loop of edges";
+    case TopAbs_EDGE:
+      return "an edge";
+    case TopAbs_SHELL:
+      return "a shell";
+    case TopAbs_SOLID:
+      return "a solid";
+    default:
+      return "a part";
+  }
+}
+
+void note_messages(const Handle(ShapeExtend_MsgRegistrator) & messages, CadReport& report) {
+  for (ShapeExtend_DataMapIteratorOfDataMapOfShapeListOfMsg it(messages->MapShape()); it.More(); it.Next())
+    for (Message_ListIteratorOfListOfMsg msg(it.Value()); msg.More(); msg.Next()) {
+      const Point at = place_of(it.Key());
+      const std::string kind = kind_of(msg.Value());
+      std::string words = kind;
+      std::replace(words.begin(), words.end(), '_', ' ');
+      report.repairs.push_back(
+          {kind, fmt::format("{} at ({:g}, {:g}, {:g}): {}", word_for(it.Key()), at.x, at.y, at.z, words), at});
+    }
+}
+
+bool has_face_without_wires(const TopoDS_Shape& shape) {
+  for (TopExp_Explorer f(shape, TopAbs_FACE); f.More(); f.Next())
+    if (!TopExp_Explorer(f.Current(), TopAbs_WIRE).More()) return true;
+  return false;
+}
+
+void fix(Part& part, const Say& say) {
+  say("checking", -1);
+  if (BRepCheck_Analyzer(part.shape).IsValid() && !has_face_without_wires(part.shape)) return;
+  const Handle(ShapeFix_Shape) fixer = new ShapeFix_Shape(part.shape);
+  const Handle(ShapeExtend_MsgRegistrator) messages = new ShapeExtend_MsgRegistrator;
+  fixer->SetMsgRegistrator(messages);
+  fixer->SetPrecision(1e-7 * std::max(part.diagonal, 1e-30));
+  fixer->SetMaxTolerance(std::max(1e-4 * part.diagonal, largest_tolerance(part.shape)));
+  Watch watch(say, "mending");
+  fixer->Perform(watch.range());
+  watch.check();
+  const Handle(ShapeBuild_ReShape) context = fixer->Context();
+  part.shape = fixer->Shape();
+  part.faces.follow(part.shape, [&](const TopoDS_Shape& face) {
+    TopTools_ListOfShape images;
+    const TopoDS_Shape image = context->Apply(face);
+    if (!image.IsNull()) images.Append(image);
+    return images;
+  });
+  note_messages(messages, part.report);
+}
+
+/// Faces with an edge that no other face has.
+bool is_loose(const TopoDS_Shape& shape) { return count_free_edges(shape) > 0; }
+
+/// What is whole stays as it is; the rest is taken apart to faces.
+void split_loose(const TopoDS_Shape& shape, TopTools_ListOfShape& whole, TopTools_ListOfShape& loose) {
+  if (shape.ShapeType() == TopAbs_COMPOUND || shape.ShapeType() == TopAbs_COMPSOLID) {
+    for (TopoDS_Iterator it(shape); it.More(); it.Next()) split_loose(it.Value(), whole, loose);
+    return;
+  }
+  if (!TopExp_Explorer(shape, TopAbs_FACE).More()) return;
+  (is_loose(shape) ? loose : whole).Append(shape);
+}
+
+/// The sides that two faces share after sewing and the largest distance between them.
+void note_sewn(const BRepBuilderAPI_Sewing& sewing, double tolerance, std::size_t before, std::size_t after,
+               Part& part) {
+  double gap = 0;
+  Point at;
+  for (TopExp_Explorer e(sewing.SewedShape(), TopAbs_EDGE); e.More(); e.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(e.Current());
+    if (BRep_Tool::Tolerance(edge) <= gap) continue;
+    gap = BRep_Tool::Tolerance(edge);
+    at = place_of(edge);
+  }
+  part.report.repairs.push_back(
+      {"sewn",
+       fmt::format("loose faces were sewn with a tolerance of {:.3g}: {} free edges before, {} after; the widest gap "
+                   "may be {:.3g}, at ({:g}, {:g}, {:g})",
+                   tolerance, before, after, gap, at.x, at.y, at.z),
+       at});
+}
+
+void sew(Part& part, const CadOptions& options, const Say& say) {
+  TopTools_ListOfShape whole, loose;
+  split_loose(part.shape, whole, loose);
+  if (loose.IsEmpty()) return;
+  const std::size_t before = count_free_edges(part.shape);
+  std::vector<double> tolerances;
+  if (options.tolerance > 0)
+    tolerances = {options.tolerance};
+  else
+    for (const double share : kSewShares) tolerances.push_back(share * part.diagonal);
+  Handle(BRepBuilderAPI_Sewing) best;
+  std::size_t fewest = before;
+  double used = 0;
+  for (const double tolerance : tolerances) {
+    if (fewest == 0) break;
+    const Handle(BRepBuilderAPI_Sewing) sewing = new BRepBuilderAPI_Sewing(tolerance);
+    for (const TopoDS_Shape& shape : loose) sewing->Add(shape);
+    Watch watch(say, "sewing");
+    sewing->Perform(watch.range());
+    watch.check();
+    const std::size_t left = sewing->SewedShape().IsNull() ? before : count_free_edges(sewing->SewedShape());
+    if (left >= fewest) continue;
+    fewest = left;
+    best = sewing;
+    used = tolerance;
+  }
+  if (best.IsNull()) return;
+  note_sewn(*best, used, before, fewest, part);
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  for (const TopoDS_Shape& shape : whole) builder.Add(all, shape);
+  builder.Add(all, best->SewedShape());
+  part.shape = all;
+  part.faces.follow(part.shape, [&](const TopoDS_Shape& face) {
+    TopTools_ListOfShape images;
+    if (best->IsModifiedSubShape(face)) images.Append(best->ModifiedSubShape(face));
+    return images;
+  });
+}
+
+}  // namespace
+
+void heal(Part& part, const CadOptions& options, const Say& say) {
+  BRepLib::BuildCurves3d(part.shape);
+  if (options.heals) fix(part, say);
+  if (options.sews) sew(part, options, say);
+  BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30));
+}
+
+}  // namespace delfront::cad

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one symbol that is seen. No exception leaves: what went wrong stands in the result.
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <Standard_Failure.hxx>
+#include <Standard_Version.hxx>
+#include <mutex>
+
+#include "fmt/format.h"
+#include "part.hpp"
+
+namespace delfront::cad {
+namespace {
+
+std::mutex one_at_a_time;  // OpenCASCADE keeps units and messages in globals
+
+/// The library prints nothing; the printers come back afterwards.
+class Silence {
+ public:
+  Silence() {
+    const Message_SequenceOfPrinters& all = Message::DefaultMessenger()->Printers();
+    for (int i = 1; i <= all.Length(); ++i) printers_.Append(all.Value(i));
+    for (int i = 1; i <= printers_.Length(); ++i) Message::DefaultMessenger()->RemovePrinter(printers_.Value(i));
+  }
+  ~Silence() {
+    for (int i = 1; i <= printers_.Length(); ++i) Message::DefaultMessenger()->AddPrinter(printers_.Value(i));
+  }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  Message_SequenceOfPrinters printers_;
+};
+
+void work(const Request& request, Result& result) {
+  const Say say = [&](const char* what, double fraction) {
+    if (request.progress && !request.progress(request.user, what, fraction)) throw Stopped();
+  };
+  say("reading", -1);
+  Part part = read_file(request.path, say);
+  heal(part, request.options, say);
+  if (request.options.imprints) imprint(part, say);
+  translate(part, result, say);
+}
+
+Result* read(const Request* request) {
+  auto result = std::make_unique<Result>();
+  const std::lock_guard lock(one_at_a_time);
+  const Silence silence;
+  try {
+    work(*request, *result);
+    result->ending = Result::Ending::done;
+  } catch (const Stopped&) {
+    result->ending = Result::Ending::stopped;
+  } catch (const Failure& e) {
+    result->error = e.what();
+  } catch (const Standard_Failure& e) {
+    result->error = fmt::format("OpenCASCADE could not read it: {} {}", e.DynamicType()->Name(),
+                                e.GetMessageString() ? e.GetMessageString() : "");
+  } catch (const std::exception& e) {
+    result->error = e.what();
+  }
+  return result.release();
+}
+
+void release(Result* result) { delete result; }
+
+constexpr ModuleInfo kInfo{kInterfaceVersion,
+                           sizeof(Request),
+                           sizeof(Result),
+                           sizeof(Face),
+                           "OpenCASCADE " OCC_VERSION_COMPLETE,
+                           read,
+                           release};
+
+}  // namespace
+}  // namespace delfront::cad
+
+extern "C" __attribute__((visibility("default"))) const delfront::cad::ModuleInfo* delfront_cad_module() {
+  return &delfront::cad::kInfo;
+}

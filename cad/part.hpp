@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is read and mended before it is translated: a shape, and what is known of its faces.
+#pragma once
+#include <Message_ProgressRange.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
+#include <TopTools_ListOfShape.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cad/cad_data.hpp"
+
+namespace delfront::cad {
+
+/// @brief What stops reading, with a sentence for the user.
+struct Failure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+/// @brief The caller wants no more.
+struct Stopped {};
+
+/// @brief What a file says of a face.
+struct FaceFacts {
+  std::string name, colour, layer;
+  std::vector<std::string> solids;
+};
+
+/// @brief What is known of faces, by their shape without orientation; follows them through operations.
+class FaceTable {
+ public:
+  void set(const TopoDS_Shape& face, const FaceFacts& facts);
+  const FaceFacts* find(const TopoDS_Shape& face) const;
+  /// @param images  what became of a face; empty: it is gone, or unchanged where it is still in the shape
+  void follow(const TopoDS_Shape& after, const std::function<TopTools_ListOfShape(const TopoDS_Shape&)>& images);
+
+ private:
+  static void merge(FaceFacts& into, const FaceFacts& from);
+  TopTools_DataMapOfShapeInteger index_;
+  std::vector<FaceFacts> facts_;
+  std::vector<TopoDS_Shape> faces_;  ///< in the order they came: that of the map is one of addresses
+};
+
+/// @brief A file's geometry on its way to the caller.
+struct Part {
+  TopoDS_Shape shape;
+  FaceTable faces;
+  CadReport report;
+  double diagonal = 0;  ///< of the box round it
+};
+
+/// @brief A sentence of progress; throws Stopped where the caller says so.
+using Say = std::function<void(const char* what, double fraction)>;
+
+/// @throws Failure  not readable
+Part read_file(const std::string& path, const Say& say);
+
+/// @brief Mends what is not valid, sews loose faces, closes shells to solids. Notes all it does.
+void heal(Part& part, const CadOptions& options, const Say& say);
+
+/// @brief What several solids share becomes the same face of each.
+void imprint(Part& part, const Say& say);
+
+/// @brief Vertices, edges and faces as plain data.
+void translate(Part& part, Result& result, const Say& say);
+
+/// @brief A range that asks the caller whether to go on, for OpenCASCADE's long loops.
+class Watch {
+ public:
+  explicit Watch(const Say& say, const char* what);
+  ~Watch();
+  Message_ProgressRange range();
+  /// @throws Stopped  the caller said so during the operation
+  void check() const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+std::size_t count_free_edges(const TopoDS_Shape& shape);
+double diagonal_of(const TopoDS_Shape& shape);
+double largest_tolerance(const TopoDS_Shape& shape);
+
+}  // namespace delfront::cad

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files to shapes. STEP and IGES go through the application framework, which knows colours, layers and products; what
+// is left to find out is in which unit the file is written, since OpenCASCADE would turn everything into millimetres.
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <STEPControl_Reader.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDF_ChildIterator.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDF_Tool.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <UnitsMethods.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_LayerTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "fmt/format.h"
+#include "part.hpp"
+
+namespace delfront::cad {
+namespace {
+
+/// A unit by the words that files use, as OpenCASCADE numbers it (and IGES does).
+struct Unit {
+  const char* word;
+  const char* name;
+  const char* code;
+  double metres;
+};
+constexpr Unit kUnits[] = {{"inch", "in", "INCH", 0.0254},   {"millimetre", "mm", "MM", 1e-3},
+                           {"millimeter", "mm", "MM", 1e-3}, {"foot", "ft", "FT", 0.3048},
+                           {"feet", "ft", "FT", 0.3048},     {"mile", "mi", "MI", 1609.344},
+                           {"kilometre", "km", "KM", 1e3},   {"kilometer", "km", "KM", 1e3},
+                           {"centimetre", "cm", "CM", 1e-2}, {"centimeter", "cm", "CM", 1e-2},
+                           {"micrometre", "um", "UM", 1e-6}, {"micron", "um", "UM", 1e-6},
+                           {"metre", "m", "M", 1},           {"meter", "m", "M", 1}};
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+std::string suffix_of(const std::string& path) { return lower(std::filesystem::path(path).extension().string()); }
+
+const Unit* find_unit(const std::string& words) {
+  const std::string name = lower(words);
+  for (const Unit& unit : kUnits)
+    if (name.find(unit.word) != std::string::npos) return &unit;
+  for (const Unit& unit : kUnits)
+    if (name == unit.name) return &unit;
+  return nullptr;
+}
+
+const Unit* find_code(const std::string& code) {
+  for (const Unit& unit : kUnits)
+    if (code == unit.code) return &unit;
+  return nullptr;
+}
+
+/// Coordinates stay in the unit of the file.
+void use_unit(const Unit* unit, CadReport& report) {
+  const Unit& used = unit ? *unit : *find_code("MM");
+  Interface_Static::SetCVal("xstep.cascade.unit", used.code);
+  UnitsMethods::SetCasCadeLengthUnit(used.metres * 1000);
+  if (!unit) return;
+  report.unit = unit->name;
+  report.metres_per_unit = unit->metres;
+}
+
+/// Names that say nothing.
+std::string sensible(std::string name) {
+  while (!name.empty() && std::isspace(static_cast<unsigned char>(name.back()))) name.pop_back();
+  const auto first = std::find_if(name.begin(), name.end(), [](unsigned char c) { return !std::isspace(c); });
+  name.erase(name.begin(), first);
+  const std::string low = lower(name);
+  // the last ones are OpenCASCADE's own for shapes without a name
+  for (const char* word : {"none", "unnamed", "noname", "$", "*", "the product name", "compound", "compsolid", "solid",
+                           "shell", "face", "wire", "edge", "vertex", "sheet", "brep", "trimmed_surf", "trsurf"})
+    if (low == word) return {};
+  if (low.rfind("open cascade", 0) == 0) return {};
+  return name;
+}
+
+std::string name_of(const TDF_Label& label) {
+  Handle(TDataStd_Name) name;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+  const TCollection_AsciiString text(name->Get());  // UTF-8
+  return sensible(text.ToCString());
+}
+
+std::string hex_of(const Quantity_Color& colour) {
+  Standard_Real r = 0, g = 0, b = 0;
+  colour.Values(r, g, b, Quantity_TOC_sRGB);
+  const auto byte = [](double x) { return int(std::clamp(x, 0.0, 1.0) * 255 + 0.5); };
+  return fmt::format("{:02X}{:02X}{:02X}", byte(r), byte(g), byte(b));
+}
+
+/// Walks through products and their instances, and notes what is known of each face in its place.
+class Document {
+ public:
+  Document(const Handle(TDocStd_Document) & document, std::function<std::string(const TopoDS_Shape&)> entity_name)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+        colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        layers_(XCAFDoc_DocumentTool::LayerTool(document->Main())),
+        entity_name_(std::move(entity_name)) {}
+
+  TopoDS_Shape run(Part& part) {
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    BRep_Builder builder;
+    TopoDS_Compound all;
+    builder.MakeCompound(all);
+    for (int i = 1; i <= roots.Length(); ++i) {
+      builder.Add(all, shapes_->GetShape(roots.Value(i)));
+      walk(roots.Value(i), TopLoc_Location(), {}, part);
+    }
+    return all;
+  }
+
+ private:
+  struct Inherited {
+    std::string colour, layer, name;
+  };
+
+  void walk(const TDF_Label& label, const TopLoc_Location& at, Inherited from, Part& part) {
+    TDF_Label product = label;
+    TopLoc_Location here = at;
+    if (const std::string layer = layer_of(label); !layer.empty()) from.layer = layer;
+    if (const std::string colour = colour_of(label); !colour.empty()) from.colour = colour;
+    if (XCAFDoc_ShapeTool::IsReference(label)) {
+      XCAFDoc_ShapeTool::GetReferredShape(label, product);
+      here = at * XCAFDoc_ShapeTool::GetLocation(label);
+      return walk(product, here, from, part);
+    }
+    if (const std::string name = name_of(product); !name.empty()) from.name = name;
+    if (XCAFDoc_ShapeTool::IsAssembly(product)) {
+      TDF_LabelSequence children;
+      XCAFDoc_ShapeTool::GetComponents(product, children);
+      for (int i = 1; i <= children.Length(); ++i) walk(children.Value(i), here, from, part);
+      return;
+    }
+    note_faces(product, here, from, part);
+  }
+
+  /// Faces of a product; those of solids get the solid's name, where the product has several.
+  void note_faces(const TDF_Label& product, const TopLoc_Location& at, const Inherited& from, Part& part) {
+    const TopoDS_Shape shape = shapes_->GetShape(product);
+    TopTools_IndexedMapOfShape solids, all;
+    TopExp::MapShapes(shape, TopAbs_SOLID, solids);
+    TopExp::MapShapes(shape, TopAbs_FACE, all);
+    for (int s = 1; s <= solids.Extent(); ++s) {
+      std::string name = own_name(product, solids(s));
+      if (name.empty() || solids.Extent() == 1) name = from.name.empty() ? name : from.name;
+      std::string colour = own_colour(product, solids(s));
+      if (colour.empty()) colour = from.colour;
+      TopTools_IndexedMapOfShape faces;
+      TopExp::MapShapes(solids(s), TopAbs_FACE, faces);
+      for (int f = 1; f <= faces.Extent(); ++f)
+        note_face(product, faces(f), at, {colour, from.layer, name}, true, part);
+    }
+    for (int f = 1; f <= all.Extent(); ++f)
+      if (solids.IsEmpty()) note_face(product, all(f), at, from, false, part);
+  }
+
+  void note_face(const TDF_Label& product, const TopoDS_Shape& face, const TopLoc_Location& at, const Inherited& from,
+                 bool is_of_solid, Part& part) {
+    FaceFacts facts;
+    facts.name = own_name(product, face);
+    facts.colour = own_colour(product, face);
+    if (facts.colour.empty()) facts.colour = from.colour;
+    facts.layer = from.layer;
+    TDF_Label sub;
+    if (shapes_->FindSubShape(product, face, sub))
+      if (const std::string layer = layer_of(sub); !layer.empty()) facts.layer = layer;
+    if (is_of_solid || !from.name.empty()) facts.solids.push_back(from.name);
+    part.faces.set(face.Moved(at), facts);
+  }
+
+  std::string own_name(const TDF_Label& product, const TopoDS_Shape& shape) const {
+    TDF_Label sub;
+    std::string name = entity_name_(shape);
+    if (name.empty() && shapes_->FindSubShape(product, shape, sub)) name = name_of(sub);
+    return name;
+  }
+
+  std::string own_colour(const TDF_Label& product, const TopoDS_Shape& shape) const {
+    TDF_Label sub;
+    return shapes_->FindSubShape(product, shape, sub) ? colour_of(sub) : std::string();
+  }
+
+  std::string colour_of(const TDF_Label& label) const {
+    Quantity_Color colour;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
+      if (colours_->GetColor(label, type, colour)) return hex_of(colour);
+    return {};
+  }
+
+  std::string layer_of(const TDF_Label& label) const {
+    Handle(TColStd_HSequenceOfExtendedString) names = layers_->GetLayers(label);
+    if (names.IsNull() || names->IsEmpty()) return {};
+    return sensible(TCollection_AsciiString(names->First()).ToCString());
+  }
+
+  Handle(XCAFDoc_ShapeTool) shapes_;
+  Handle(XCAFDoc_ColorTool) colours_;
+  Handle(XCAFDoc_LayerTool) layers_;
+  std::function<std::string(const TopoDS_Shape&)> entity_name_;
+};
+
+Handle(TDocStd_Document) new_document() {
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  return document;
+}
+
+void close(const Handle(TDocStd_Document) & document) { XCAFApp_Application::GetApplication()->Close(document); }
+
+void check_transferred(bool is_done, const TopoDS_Shape& shape, const char* what) {
+  if (!is_done || shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More())
+    throw Failure(fmt::format("the {} file holds no faces that could be read", what));
+}
+
+/// What a file that is no STEP file at all begins with is told from one that is damaged.
+std::string first_bytes(const std::string& path, std::size_t count) {
+  std::ifstream in(path, std::ios::binary);
+  std::string text(count, '\0');
+  in.read(text.data(), std::streamsize(count));
+  text.resize(std::size_t(in.gcount()));
+  return text;
+}
+
+bool ends_whole(const std::string& path, const std::string& mark) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const auto size = std::streamoff(in.tellg());
+  const auto tail = std::min<std::streamoff>(size, 4096);
+  in.seekg(size - tail);
+  std::string text(std::size_t(tail), '\0');
+  in.read(text.data(), tail);
+  return text.find(mark) != std::string::npos;
+}
+
+bool has_end_of_iges(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string line, last;
+  while (std::getline(in, line))
+    if (line.find_first_not_of(" \r\n\x1a") != std::string::npos) last = line;
+  return last.size() > 72 && last[72] == 'T';
+}
+
+void read_step(const std::string& path, Part& part, const Say& say) {
+  part.report.format = "STEP";
+  if (first_bytes(path, 4096).find("ISO-10303-21") == std::string::npos)
+    throw Failure("this is no STEP file: it does not begin with ISO-10303-21");
+  if (!ends_whole(path, "END-ISO-10303-21"))
+    throw Failure("the STEP file is not whole: END-ISO-10303-21 is missing at its end; copy it again");
+  STEPCAFControl_Reader reader;
+  reader.SetNameMode(true);
+  reader.SetColorMode(true);
+  reader.SetLayerMode(true);
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Failure("the STEP file cannot be parsed");
+  say("units", -1);
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  use_unit(lengths.IsEmpty() ? nullptr : find_unit(lengths.First().ToCString()), part.report);
+  Handle(TDocStd_Document) document = new_document();
+  Watch watch(say, "translating");
+  const bool is_done = reader.Transfer(document, watch.range());
+  watch.check();
+  const Handle(XSControl_TransferReader) transfer = reader.Reader().WS()->TransferReader();
+  const auto name_of_entity = [&](const TopoDS_Shape& shape) -> std::string {
+    for (const TopoDS_Shape& s : {shape, shape.Located(TopLoc_Location())}) {
+      const Handle(StepRepr_RepresentationItem) item =
+          Handle(StepRepr_RepresentationItem)::DownCast(transfer->EntityFromShapeResult(s, 1));
+      if (!item.IsNull() && !item->Name().IsNull()) return sensible(item->Name()->ToCString());
+    }
+    return {};
+  };
+  part.shape = Document(document, name_of_entity).run(part);
+  close(document);
+  check_transferred(is_done, part.shape, "STEP");
+}
+
+void read_iges(const std::string& path, Part& part, const Say& say) {
+  part.report.format = "IGES";
+  const std::string first = first_bytes(path, 80);
+  if (first.size() < 80 || (first[72] != 'S' && first[72] != 'C' && first[72] != 'B'))
+    throw Failure("this is no IGES file: column 73 of its first line is not S");
+  if (!has_end_of_iges(path))
+    throw Failure("the IGES file is not whole: it does not end with a line that has T in column 73; copy it again");
+  IGESCAFControl_Reader reader;
+  if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Failure("the IGES file cannot be parsed");
+  const Handle(IGESData_IGESModel) model = reader.IGESModel();
+  constexpr const char* kCodes[] = {"", "INCH", "MM", "", "FT", "MI", "M", "KM", "MIL", "UM", "CM", "UIN"};
+  const int flag = model->GlobalSection().UnitFlag();
+  const Handle(TCollection_HAsciiString) name = model->GlobalSection().UnitName();
+  const Unit* unit = flag > 0 && flag < 12 ? find_code(kCodes[flag]) : nullptr;
+  if (!unit && !name.IsNull()) unit = find_unit(name->ToCString());
+  use_unit(unit, part.report);
+  Handle(TDocStd_Document) document = new_document();
+  Watch watch(say, "translating");
+  const bool is_done = reader.Transfer(document, watch.range());
+  watch.check();
+  part.shape = Document(document, [](const TopoDS_Shape&) { return std::string(); }).run(part);
+  close(document);
+  check_transferred(is_done, part.shape, "IGES");
+}
+
+/// OpenCASCADE's own text; EGADS puts a line before it and its attributes after it.
+void read_brep_text(const std::string& path, Part& part, const char* format) {
+  part.report.format = format;
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  std::string all = text.str();
+  const std::size_t start = all.find("CASCADE Topology V");
+  if (start == std::string::npos || start > 4096)
+    throw Failure(fmt::format("this is no {} file: CASCADE Topology is not at its beginning", format));
+  const std::size_t attributes = all.find("##EGADS HEADER");
+  if (attributes != std::string::npos) all.resize(attributes);
+  // the shape itself is said last, after all that it is made of
+  if (all.find("\nTShapes ", start) == std::string::npos)
+    throw Failure(fmt::format("the {} file is not whole: it has no list of shapes (TShapes)", format));
+  std::istringstream stream(all.substr(start));
+  stream.exceptions(std::ios::failbit | std::ios::badbit);  // at its end the reader would go on for ever
+  BRep_Builder builder;
+  try {
+    BRepTools::Read(part.shape, stream, builder);
+  } catch (const std::ios::failure&) {
+    throw Failure(fmt::format("the {} file is not whole, or damaged", format));
+  }
+  check_transferred(true, part.shape, format);
+}
+
+}  // namespace
+
+Part read_file(const std::string& path, const Say& say) {
+  Part part;
+  const std::string suffix = suffix_of(path);
+  if (std::filesystem::file_size(path) == 0) throw Failure("the file is empty");
+  Interface_Static::SetIVal("read.stepcaf.subshapes.name", 1);
+  if (suffix == ".step" || suffix == ".stp")
+    read_step(path, part, say);
+  else if (suffix == ".iges" || suffix == ".igs")
+    read_iges(path, part, say);
+  else
+    read_brep_text(path, part, suffix == ".egads" ? "EGADS" : "BREP");
+  part.diagonal = diagonal_of(part.shape);
+  return part;
+}
+
+}  // namespace delfront::cad

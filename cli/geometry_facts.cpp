@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geometry_facts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+namespace delfront::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShown = 40;       ///< entities of a kind on the terminal
+constexpr std::size_t kShownOfKind = 3;  ///< repairs and suspicious things of a kind
+
+double length_of(const BrepEdge& edge) {
+  constexpr int kPieces = 200;
+  double sum = 0;
+  for (int i = 0; i < kPieces && !edge.is_degenerate(); ++i) {
+    const double step = (edge.range[1] - edge.range[0]) / kPieces;
+    sum += distance(edge.curve->at(edge.range[0] + i * step), edge.curve->at(edge.range[0] + (i + 1) * step));
+  }
+  return sum;
+}
+
+std::string ends_of(const Brep& brep, const BrepEdge& edge) {
+  if (!edge.corners[0].is_valid()) return "closed";
+  const auto name = [&](CornerId c) {
+    return brep.corners[c].name.empty() ? fmt::format("corner {}", c.value + 1) : brep.corners[c].name;
+  };
+  return fmt::format("{} to {}", name(edge.corners[0]), name(edge.corners[1]));
+}
+
+Json notes_json(const std::vector<CadNote>& notes) {
+  Json json = Json::array();
+  for (const CadNote& note : notes)
+    json.push_back({{"kind", note.kind}, {"message", note.message}, {"at", {note.at.x, note.at.y, note.at.z}}});
+  return json;
+}
+
+Json cad_json(const CadReport& cad) {
+  return {{"format", cad.format},
+          {"unit", cad.unit},
+          {"metres_per_unit", cad.metres_per_unit > 0 ? Json(cad.metres_per_unit) : Json(nullptr)},
+          {"solids", cad.solids},
+          {"shells", cad.shells},
+          {"free_edges", cad.free_edges},
+          {"internal_edges", cad.internal_edges},
+          {"largest_tolerance", cad.largest_tolerance},
+          {"repairs", notes_json(cad.repairs)},
+          {"suspicious", notes_json(cad.suspicious)}};
+}
+
+void print_notes(const char* word, const std::vector<CadNote>& notes) {
+  std::map<std::string, std::size_t> count;
+  for (const CadNote& note : notes) {
+    const std::size_t k = ++count[note.kind];
+    if (k <= kShownOfKind) fmt::print("{:<14} {}: {}\n", word, note.kind, note.message);
+  }
+  for (const auto& [kind, n] : count)
+    if (n > kShownOfKind) fmt::print("{:<14} {}: and {} more (--json lists all)\n", word, kind, n - kShownOfKind);
+}
+
+void print_cad(const CadReport& cad) {
+  fmt::print("CAD            {}, {} solid{}, {} shell{}{}\n", cad.format, cad.solids, cad.solids == 1 ? "" : "s",
+             cad.shells, cad.shells == 1 ? "" : "s",
+             cad.free_edges > 0 ? fmt::format(", open: {} free edges", cad.free_edges) : "");
+  fmt::print("unit           {}\n", cad.unit.empty() ? "the file does not say" : cad.unit);
+  fmt::print("tolerance      up to {:.3g}\n", cad.largest_tolerance);
+  if (cad.internal_edges > 0) fmt::print("left out       {} edges within faces\n", cad.internal_edges);
+  print_notes("repaired", cad.repairs);
+  print_notes("suspicious", cad.suspicious);
+}
+
+}  // namespace
+
+Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport& cad) {
+  Json corners = Json::array(), edges = Json::array(), faces = Json::array();
+  for (const BrepCorner& c : brep.corners)
+    corners.push_back({{"name", c.name}, {"at", {c.at.x, c.at.y, c.at.z}}, {"tolerance", c.tolerance}});
+  for (const BrepEdge& e : brep.edges)
+    if (!e.is_degenerate())
+      edges.push_back(
+          {{"name", e.name}, {"length", length_of(e)}, {"ends", ends_of(brep, e)}, {"tolerance", e.tolerance}});
+  for (std::size_t f = 0; f < brep.faces.size(); ++f) {
+    const BrepFace& face = brep.faces[FaceId(f)];
+    Json json = {{"name", face.name},
+                 {"kind", face.kind},
+                 {"loops", face.loops.size()},
+                 {"tolerance", face.tolerance},
+                 {"triangles", grid.faces[f].triangles},
+                 {"mapped", grid.faces[f].is_mapped},
+                 {"min_angle_deg", grid.faces[f].min_angle_deg}};
+    if (f < cad.faces.size()) {
+      const CadFace& facts = cad.faces[f];
+      json["surface"] = facts.surface;
+      json["colour"] = facts.colour;
+      json["layer"] = facts.layer;
+      json["solids"] = facts.solids;
+    }
+    faces.push_back(std::move(json));
+  }
+  Json json = {{"corners", corners},
+               {"edges", edges},
+               {"faces", faces},
+               {"grid",
+                {{"triangles", grid.triangles},
+                 {"min_angle", grid.min_angle_deg},
+                 {"mean_min_angle", grid.mean_min_angle_deg},
+                 {"below_25", grid.below_25_deg},
+                 {"largest_distance", grid.largest_distance},
+                 {"largest_normal_angle", grid.largest_normal_angle_deg}}}};
+  if (!cad.format.empty()) json["cad"] = cad_json(cad);
+  return json;
+}
+
+void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadReport& cad) {
+  std::size_t shown = 0, edges = 0;
+  for (const BrepEdge& e : brep.edges) edges += !e.is_degenerate();
+  if (!cad.format.empty()) print_cad(cad);
+  fmt::print("geometry       {} corners, {} edges, {} faces\n", brep.corners.size(), edges, brep.faces.size());
+  for (const BrepCorner& c : brep.corners)
+    if (!c.name.empty() && shown++ < kShown)
+      fmt::print("corner         {:<20} {:g} {:g} {:g}\n", c.name, c.at.x, c.at.y, c.at.z);
+  shown = 0;
+  for (const BrepEdge& e : brep.edges)
+    if (!e.name.empty() && shown++ < kShown)
+      fmt::print("edge           {:<20} length {:.6g}, {}\n", e.name, length_of(e), ends_of(brep, e));
+  for (std::size_t f = 0; f < std::min(kShown, brep.faces.size()); ++f) {
+    const BrepFace& face = brep.faces[FaceId(f)];
+    const BrepFaceReport& made = grid.faces[f];
+    std::string what = face.kind.empty() ? "" : face.kind + ", ";
+    if (f < cad.faces.size()) what += cad.faces[f].surface + ", ";
+    if (f < cad.faces.size() && !cad.faces[f].colour.empty()) what += "colour " + cad.faces[f].colour + ", ";
+    fmt::print("face {:<9} {:<20} {}{} loop{}, {} triangles of usual size, angles from {:.1f} deg\n", f + 1, face.name,
+               what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles, made.min_angle_deg);
+  }
+  if (brep.faces.size() > kShown) fmt::print("               and {} more faces\n", brep.faces.size() - kShown);
+}
+
+}  // namespace delfront::cli

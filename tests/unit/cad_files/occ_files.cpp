@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tests write and ask; errors are thrown, as in any test.
+#include "occ_files.hpp"
+
+#include <BOPAlgo_Builder.hxx>
+#include <BRepAdaptor_Surface.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
+#include <BRepBuilderAPI_Copy.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepExtrema_DistShapeShape.hxx>
+#include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <GProp_GProps.hxx>
+#include <GeomAPI_PointsToBSpline.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <IGESControl_Reader.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_PrinterOStream.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Reader.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TColgp_Array1OfPnt.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Face.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <fstream>
+#include <gp_Ax2.hxx>
+#include <sstream>
+#include <stdexcept>
+
+namespace delfront::occ {
+namespace {
+
+/// What it reports of its work is no part of a test's output.
+void be_silent() { Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream)); }
+
+void require(bool is_done, const std::string& path) {
+  if (!is_done) throw std::runtime_error("cannot write " + path);
+}
+
+TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  for (const TopoDS_Shape& shape : shapes) builder.Add(all, shape);
+  return all;
+}
+
+}  // namespace
+
+void write_step(const TopoDS_Shape& shape, const std::string& path) {
+  be_silent();
+  STEPControl_Writer writer;
+  writer.Transfer(shape, STEPControl_AsIs);
+  require(writer.Write(path.c_str()) == IFSelect_RetDone, path);
+}
+
+void write_iges(const TopoDS_Shape& shape, const std::string& path) {
+  be_silent();
+  IGESControl_Writer writer("MM", 0);
+  writer.AddShape(shape);
+  writer.ComputeModel();
+  require(writer.Write(path.c_str()), path);
+}
+
+void write_brep(const TopoDS_Shape& shape, const std::string& path) {
+  require(BRepTools::Write(shape, path.c_str()), path);
+}
+
+void write_coloured_box(const std::string& name, const std::vector<Colour>& colours, const std::string& path) {
+  be_silent();
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const Handle(XCAFDoc_ColorTool) tool = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  const TopoDS_Shape made = box(1, 2, 3);
+  const TDF_Label label = shapes->AddShape(made, false);
+  TDataStd_Name::Set(label, name.c_str());
+  std::size_t i = 0;
+  for (TopExp_Explorer face(made, TopAbs_FACE); face.More() && i < colours.size(); face.Next(), ++i) {
+    const TDF_Label sub = shapes->AddSubShape(label, face.Current());
+    tool->SetColor(sub, Quantity_Color(colours[i].r, colours[i].g, colours[i].b, Quantity_TOC_sRGB), XCAFDoc_ColorSurf);
+  }
+  STEPCAFControl_Writer writer;
+  writer.Transfer(document, STEPControl_AsIs);
+  require(writer.Write(path.c_str()) == IFSelect_RetDone, path);
+  XCAFApp_Application::GetApplication()->Close(document);
+}
+
+TopoDS_Shape box(double x, double y, double z, Point at) {
+  return BRepPrimAPI_MakeBox(gp_Pnt(at.x, at.y, at.z), x, y, z).Shape();
+}
+TopoDS_Shape cylinder(double radius, double height) { return BRepPrimAPI_MakeCylinder(radius, height).Shape(); }
+TopoDS_Shape sphere(double radius) { return BRepPrimAPI_MakeSphere(radius).Shape(); }
+TopoDS_Shape cone(double low, double high, double height) { return BRepPrimAPI_MakeCone(low, high, height).Shape(); }
+TopoDS_Shape torus(double radius, double tube) { return BRepPrimAPI_MakeTorus(radius, tube).Shape(); }
+
+TopoDS_Shape tee() {
+  const TopoDS_Shape main = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, -3), gp_Dir(0, 0, 1)), 1, 6).Shape();
+  const TopoDS_Shape branch = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(1, 0, 0)), 0.6, 3).Shape();
+  return BRepAlgoAPI_Fuse(main, branch).Shape();
+}
+
+TopoDS_Shape two_boxes(bool is_fused) {
+  const TopoDS_Shape a = box(1, 1, 1), b = box(2, 1, 1, {1, 0, 0});
+  if (!is_fused) return compound_of({a, b});
+  BOPAlgo_Builder builder;
+  builder.AddArgument(a);
+  builder.AddArgument(b);
+  builder.Perform();
+  return builder.Shape();
+}
+
+TopoDS_Shape open_box() {
+  const TopoDS_Shape whole = box(1, 1, 1);
+  std::vector<TopoDS_Shape> faces;
+  for (TopExp_Explorer face(whole, TopAbs_FACE); face.More(); face.Next()) faces.push_back(face.Current());
+  faces.pop_back();
+  BRep_Builder builder;
+  TopoDS_Shell shell;
+  builder.MakeShell(shell);
+  for (const TopoDS_Shape& face : faces) builder.Add(shell, face);
+  return shell;
+}
+
+TopoDS_Shape loose_box() {
+  const TopoDS_Shape whole = box(1, 2, 3);
+  std::vector<TopoDS_Shape> faces;
+  for (TopExp_Explorer face(whole, TopAbs_FACE); face.More(); face.Next())
+    faces.push_back(BRepBuilderAPI_Copy(face.Current()).Shape());
+  return compound_of(faces);
+}
+
+namespace {
+
+Handle(Geom_BSplineCurve) wave() {
+  TColgp_Array1OfPnt points(1, 6);
+  const double z[] = {0, 0.4, 1.1, 0.7, 0.2, 0.3};
+  for (int i = 1; i <= 6; ++i) points(i) = gp_Pnt(1 + z[i - 1], 0, 0.8 * i);
+  return GeomAPI_PointsToBSpline(points).Curve();
+}
+
+}  // namespace
+
+TopoDS_Shape bent_plate() {
+  const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(wave());
+  const TopoDS_Shape sheet = BRepPrimAPI_MakePrism(edge, gp_Vec(0, 2, 0)).Shape();
+  return BRepPrimAPI_MakePrism(sheet, gp_Vec(1.5, 0, 0)).Shape();
+}
+
+TopoDS_Shape revolved_spline() {
+  const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(wave());
+  return BRepPrimAPI_MakeRevol(edge, gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape();
+}
+
+double area_of(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(shape, properties, 1e-9);
+  return properties.Mass();
+}
+
+double volume_of(const TopoDS_Shape& shape) {
+  GProp_GProps properties;
+  BRepGProp::VolumeProperties(shape, properties, 1e-9);
+  return properties.Mass();
+}
+
+double distance_to(const TopoDS_Shape& shape, Point p) {
+  const TopoDS_Shape vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(p.x, p.y, p.z)).Shape();
+  BRepExtrema_DistShapeShape search(vertex, shape);
+  if (!search.IsDone() || search.NbSolution() == 0) throw std::runtime_error("no projection was found");
+  return search.Value();
+}
+
+TopoDS_Shape read(const std::string& path, const std::string& unit) {
+  be_silent();
+  const std::string suffix = path.substr(path.rfind('.'));
+  TopoDS_Shape shape;
+  if (suffix == ".brep" || suffix == ".egads") {
+    std::ifstream in(path);
+    std::stringstream text;
+    text << in.rdbuf();
+    std::istringstream rest(text.str().substr(text.str().find("CASCADE Topology")));
+    BRep_Builder builder;
+    BRepTools::Read(shape, rest, builder);
+    return shape;
+  }
+  if (suffix == ".iges" || suffix == ".igs" || suffix == ".IGS") {
+    IGESControl_Reader reader;
+    reader.ReadFile(path.c_str());
+    Interface_Static::SetCVal("xstep.cascade.unit", unit.c_str());
+    reader.TransferRoots();
+    return reader.OneShape();
+  }
+  STEPControl_Reader reader;
+  reader.ReadFile(path.c_str());
+  Interface_Static::SetCVal("xstep.cascade.unit", unit.c_str());
+  reader.TransferRoots();
+  return reader.OneShape();
+}
+
+}  // namespace delfront::occ

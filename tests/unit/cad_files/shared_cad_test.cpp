@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real files: with no sizes given each has a valid surface grid, whose points lie on the geometry by OpenCASCADE's own
+// projection.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include "delfront/cad.hpp"
+#include "delfront/surface_check.hpp"
+#include "occ_files.hpp"
+#include "pipeline/geometry_job.hpp"
+#include "support/support.hpp"
+
+namespace delfront {
+namespace {
+
+constexpr std::size_t kSampled = 60;  ///< points a file that are projected
+
+struct Expected {
+  const char* file;
+  std::size_t solids;
+  bool is_closed;  ///< bounds a volume
+};
+constexpr Expected kFiles[] = {
+    {"Pump_TopCover.brep", 1, true}, {"as1-oc-214.stp", 18, true},   {"cube-in.step", 1, true},
+    {"featuretype.STEP", 1, true},   {"geom_oneram6.IGS", 0, true},  {"hammer.iges", 0, true},
+    {"linkrods.step", 1, true},      {"mesh_T106_V3.step", 0, true}, {"onera-m6-sharp-te.egads", 1, true},
+    {"wing_fuselage.step", 2, true}, {"A319.brep", 0, true},         {"tigl_nacelle.stp", 0, false},
+};
+
+double tolerance_of(const Brep& brep, const VertexEntity& v) {
+  if (v.dimension == 0) return brep.corners[CornerId(std::size_t(v.id))].tolerance;
+  if (v.dimension == 1) return brep.edges[EdgeId(std::size_t(v.id))].tolerance;
+  return brep.faces[FaceId(std::size_t(v.id))].tolerance;
+}
+
+class SharedCad : public testing::TestWithParam<Expected> {};
+
+TEST_P(SharedCad, D1_S11_has_a_valid_grid_on_the_geometry) {
+  DELFRONT_NEEDS_SHARED_DATA(shared);
+  const Expected expected = GetParam();
+  const std::filesystem::path path = *shared / "data" / "cad" / expected.file;
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  Context context;
+  CadReport cad;
+  const Brep brep = read_cad(path.string(), {}, cad, context);
+  EXPECT_EQ(cad.solids, expected.solids);
+  EXPECT_EQ(cad.free_edges == 0, expected.is_closed);
+  const Options usual;
+  BrepGridReport report;
+  const Model model = grid_brep(brep, *geometry_sizes(brep, usual, nullptr, context), {}, report, context);
+  const SurfaceReport facts = check_surface(model, context);
+  EXPECT_EQ(facts.can_bound_volume, expected.is_closed);
+  for (const Finding& finding : facts.findings)
+    EXPECT_TRUE(finding.severity != Severity::error || finding.kind == "open_edges") << finding.message;
+
+  const std::map<std::string, std::string> codes = {{"mm", "MM"}, {"m", "M"}, {"in", "INCH"}, {"", "MM"}};
+  const TopoDS_Shape shape = occ::read(path.string(), codes.at(cad.unit));
+  const double diagonal = model.bounding_box().diagonal();
+  const std::size_t step = std::max<std::size_t>(1, model.points.size() / kSampled);
+  for (std::size_t i = 0; i < model.points.size(); i += step) {
+    const Point p = model.points[VertexId(i)];
+    const double allowed = std::max(1e-7 * diagonal, tolerance_of(brep, report.entity[i]));
+    EXPECT_LE(occ::distance_to(shape, p), allowed) << "point " << i << " of dimension " << report.entity[i].dimension;
+  }
+}
+
+std::string name_of(const testing::TestParamInfo<Expected>& info) {
+  std::string name = info.param.file;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, SharedCad, testing::ValuesIn(kFiles), name_of);
+
+}  // namespace
+}  // namespace delfront
