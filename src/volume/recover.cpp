@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kMaxRestartsWithFlips = 40;  ///< then every edge is made Delaunay, which always ends
 constexpr int kMaxRestarts = 80;
-constexpr std::size_t kFewPoints = 1000;  ///< on edges: worth any time
+constexpr std::size_t kFewPoints = 500;  ///< on edges: worth any time
 
 /// The mean length of the edges at each of the model's vertices.
 void set_model_sizes(TetComplex& complex, const Model& model, const Segments& segments) {
@@ -215,7 +215,8 @@ void recover_boundary(const Model& model, Segments& segments, TetComplex& comple
     hard = switch_to_edges(complex, model, segments, required, report, context);
     context.progress("recover", segments.steiner_edge.size(), 0, "points on edges");
     const bool is_enough = effort.gives_up && segments.steiner_edge.size() > model.triangles.size() / 2 + kFewPoints;
-    if (!hard.empty() && is_enough) break;
+    const bool is_last_with_flips = restart + 1 == kMaxRestartsWithFlips;  // Delaunay edges take many more points
+    if (!hard.empty() && (is_enough || (effort.gives_up && is_last_with_flips))) break;
     if (!hard.empty()) continue;
     subfaces.clear();
     std::size_t num_missing = 0;

@@ -31,8 +31,8 @@ struct BoundaryGrid {
 
 /// @brief How long recovery goes on. Each round starts over, with a point more on every edge that resisted.
 struct RecoveryEffort {
-  /// Where edges that resist have got half as many points as there are triangles, and a thousand: for those who have a
-  /// way out.
+  /// Where edges that resist have got half as many points as there are triangles, and 500, or would all have to be
+  /// made Delaunay: for those who have a way out.
   bool gives_up = false;
 };
 
