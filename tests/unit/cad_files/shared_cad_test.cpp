@@ -51,7 +51,8 @@ TEST_P(SharedCad, D1_S11_has_a_valid_grid_on_the_geometry) {
   EXPECT_EQ(cad.free_edges == 0, expected.is_closed);
   const Options usual;
   BrepGridReport report;
-  const Model model = grid_brep(brep, *geometry_sizes(brep, usual, nullptr, context), {}, report, context);
+  const auto size = geometry_sizes(brep, look_at_brep(brep, context), usual, nullptr, context);
+  const Model model = grid_brep(brep, *size, {}, report, context);
   const SurfaceReport facts = check_surface(model, context);
   EXPECT_EQ(facts.can_bound_volume, expected.is_closed);
   for (const Finding& finding : facts.findings)
