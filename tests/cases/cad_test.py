@@ -40,12 +40,6 @@ class CadFiles(case.Case):
         self.expect(0, "mesh", path, "-o", "cube.stl", "--stop-after", "surface", "--hmax", "100mm", "--report", "cube.json")
         self.assertLess(self.report("cube.json")["surface"]["max_edge"], 1.6 * 100 / 25.4)
 
-    def test_an_open_sheet_has_a_surface_and_no_volume(self):
-        self.needs_module()
-        path = self.shared("cad/tigl_nacelle.stp")
-        self.expect(0, "mesh", path, "-o", "sheet.vtu", "--stop-after", "surface",
-                    says="4 edges bound one face only")
-
     def test_without_the_module(self):
         path = self.write("part.step", "ISO-10303-21;\n")
         nowhere = dict(os.environ, DELFRONT_CAD_MODULE="/nowhere/libdelfront_cad.so")

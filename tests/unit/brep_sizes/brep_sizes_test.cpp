@@ -7,9 +7,9 @@
 
 #include <cmath>
 
-#include "brep_sizes/geometry_texts.hpp"
 #include "delfront/surface_check.hpp"
 #include "pipeline/geometry_job.hpp"
+#include "unit/brep_sizes/geometry_texts.hpp"
 
 namespace delfront {
 namespace {

@@ -21,8 +21,10 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
+#include <GeomAPI_ProjectPointOnSurf.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <IGESControl_Reader.hxx>
 #include <IGESControl_Writer.hxx>
@@ -191,7 +193,12 @@ double distance_to(const TopoDS_Shape& shape, Point p) {
   const TopoDS_Shape vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(p.x, p.y, p.z)).Shape();
   BRepExtrema_DistShapeShape search(vertex, shape);
   if (!search.IsDone() || search.NbSolution() == 0) throw std::runtime_error("no projection was found");
-  return search.Value();
+  double least = search.Value();  // which misses places within faces at times
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More() && least > 0; face.Next()) {
+    GeomAPI_ProjectPointOnSurf on(gp_Pnt(p.x, p.y, p.z), BRep_Tool::Surface(TopoDS::Face(face.Current())));
+    if (on.NbPoints() > 0) least = std::min(least, on.LowerDistance());
+  }
+  return least;
 }
 
 TopoDS_Shape read(const std::string& path, const std::string& unit) {
