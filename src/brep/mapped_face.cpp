@@ -14,6 +14,7 @@
 #include "delfront/errors.hpp"
 #include "planar/front.hpp"
 #include "planar/kernel.hpp"
+#include "predicates/predicates.hpp"
 
 namespace delfront {
 namespace {
@@ -191,6 +192,7 @@ class ChartedPart {
   }
 
   void fill(const WantedSize& size, bool is_lowered, const BrepOptions& options, Context& context) {
+    if (!has_area()) return grid_.fail("its border is a line in the parameter plane", grid_.points[origin_[0]].at);
     PlanarGrid plane;
     plane.complex.point.assign(domain_.points.begin(), domain_.points.end());
     PlanarKernel kernel(plane.complex);
@@ -215,6 +217,17 @@ class ChartedPart {
   }
 
  private:
+  /// Whether the points are finite, and not all on one line.
+  bool has_area() const {
+    bool is_flat = true;
+    const Point2 a = domain_.points[VertexId(0)], b = domain_.points[VertexId(1)];
+    for (const Point2 p : domain_.points) {
+      if (!std::isfinite(p.x) || !std::isfinite(p.y)) return false;
+      is_flat = is_flat && orient2d(a, b, p) == 0;
+    }
+    return !is_flat;
+  }
+
   /// Copies of a point that meet are one: those of a seam in a polar chart, those of a slit anywhere; so is a pole.
   VertexIndex chart_point(std::uint32_t p) {
     if (const auto known = number_.find(p); known != number_.end()) return known->second;
