@@ -19,10 +19,12 @@
 namespace delfront {
 namespace {
 
-constexpr double kMostStretch = 25;  ///< of lengths over directions, in a chart that is used
-constexpr double kMostChange = 3;    ///< of lengths in space over one wanted side, in a chart that is used
-constexpr double kTryPolar = 2.5;    ///< stretch of a linear chart from where a polar one is tried
-constexpr int kSamples = 17;         ///< each way, to look at a chart
+constexpr double kLeastRatio = 1e-16;   ///< between squared lengths along the axes of a chart
+constexpr double kMostSkew = 1 - 1e-9;  ///< cosine between what the axes are in space
+constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
+constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
+constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
+constexpr int kSamples = 17;            ///< each way, to look at a chart
 constexpr std::size_t kMostOfLoop = 200;
 constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
 constexpr int kPoleDirections = 8;
@@ -77,6 +79,12 @@ class ChartMetric : public SizeField {
     m.xx = rounded(xx, xx);
     m.xy = rounded(f * dot(place.x, place.y), std::sqrt(xx * yy));
     m.yy = rounded(yy, yy);
+    // Where the mapping is all but singular a front needs a metric all the same.
+    const double least = kLeastRatio * std::max(m.xx, m.yy);
+    m.xx = std::max(m.xx, least);
+    m.yy = std::max(m.yy, least);
+    const double most = kMostSkew * std::sqrt(m.xx * m.yy);
+    m.xy = std::clamp(m.xy, -most, most);
     return m;
   }
   /// It has no direction there.

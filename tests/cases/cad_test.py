@@ -40,6 +40,15 @@ class CadFiles(case.Case):
         self.expect(0, "mesh", path, "-o", "cube.stl", "--stop-after", "surface", "--hmax", "100mm", "--report", "cube.json")
         self.assertLess(self.report("cube.json")["surface"]["max_edge"], 1.6 * 100 / 25.4)
 
+    def test_an_open_sheet_is_said_and_gridded_or_refused_with_a_place(self):
+        self.needs_module()
+        path = self.shared("cad/tigl_nacelle.stp")
+        result = self.run_delfront("mesh", path, "-o", "sheet.vtu", "--stop-after", "surface")
+        self.assertIn("4 edges bound one face only", case.unbroken(result.stderr))
+        self.assertIn(result.returncode, (0, 4))
+        if result.returncode == 4:  # its lip is nearly singular
+            self.assertRegex(result.stderr, r"no valid grid was found: face 'Nacelle'[^$]* at \(")
+
     def test_without_the_module(self):
         path = self.write("part.step", "ISO-10303-21;\n")
         nowhere = dict(os.environ, DELFRONT_CAD_MODULE="/nowhere/libdelfront_cad.so")
