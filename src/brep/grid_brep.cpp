@@ -204,6 +204,11 @@ class BrepGridder {
       r.faces[f].why = grid.why_direct;
       r.largest_distance = std::max(r.largest_distance, grid.largest_distance);
       r.largest_normal_angle_deg = std::max(r.largest_normal_angle_deg, grid.largest_angle / kDegree);
+      if (grid.largest_angle > options_.normal_angle_deg * kDegree)
+        context_.log(LogLevel::warning,
+                     fmt::format("face '{}' folds: triangles of it differ from its normals by up to {:.0f} degrees; "
+                                 "nothing crosses, but look at it",
+                                 r.faces[f].name, grid.largest_angle / kDegree));
     }
     SmallestAngles angles;
     for (std::size_t t = 0; t < m.triangles.size(); ++t) {
