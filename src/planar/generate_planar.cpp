@@ -146,7 +146,7 @@ bool is_stretched(const Options& options, const SizeField& size) {
 void split_boundary(PlanarPrepared& prepared, const Options& options, double largest,
                     const std::shared_ptr<const SizeField>& asked, Context& context) {
   constexpr int kRoundsOfCircles = 2;
-  constexpr int kLastRound = 50;  // halving may go on from neighbour to neighbour; then sizes stay as they are
+  constexpr int kLastRound = 12;  // halving may go on from neighbour to neighbour; then sizes stay as they are
   const bool in_metric = is_stretched(options, *prepared.size);
   for (int round = 0;; ++round) {
     // circles say nothing of stretched triangles
