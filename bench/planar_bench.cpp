@@ -10,6 +10,7 @@
 #include <random>
 
 #include "delfront/io.hpp"
+#include "delfront/uniform_size.hpp"
 #include "planar/far_field.hpp"
 #include "planar/improve.hpp"
 #include "planar/kernel.hpp"
@@ -58,17 +59,6 @@ void delaunay_case(std::size_t n) {
              work_a_point(kernel.counts));
 }
 
-/// One size everywhere.
-class Uniform : public SizeField {
- public:
-  explicit Uniform(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
-  double lower_bound(const Box&) const override { return h_; }
-
- private:
-  double h_;
-};
-
 PlanarDomain square() {
   PlanarDomain domain;
   domain.curves.push_back({"wall", ""});
@@ -101,7 +91,7 @@ void square_case() {
     colour_regions(domain, keep, grid);
   });
   print_line("square", "triangulate", constrained, grid.complex.num_live(), "null");
-  const Uniform field(1.0 / kSquareSide);
+  const UniformSize field(1.0 / kSquareSide);
   grid.complex.h.assign(domain.points.size(), 1.0 / kSquareSide);
   PlanarCounts counts;
   const double refined = seconds_of([&] { refine_complex(grid, field, context, PointPlacement::frontal, &counts); });

@@ -126,41 +126,38 @@ bool is_usable(const std::vector<double>& knots, int degree) {
   return true;
 }
 
-NurbsCurveData data_of(const Handle(Geom_BSplineCurve) & c) {
+Point pole_of(const gp_Pnt& p) { return point_of(p); }
+Point pole_of(const gp_Pnt2d& p) { return {p.X(), p.Y(), 0}; }
+
+/// A spline in space or in the plane, periodic ones unrolled.
+template <class Spline>
+NurbsCurveData nurbs_of(opencascade::handle<Spline> c) {
+  if (c->IsPeriodic()) {
+    c = opencascade::handle<Spline>::DownCast(c->Copy());
+    c->SetNotPeriodic();
+  }
   NurbsCurveData data;
   data.degree = c->Degree();
   data.knots = numbers(c->KnotSequence());
   for (int i = 1; i <= c->NbPoles(); ++i) {
-    data.points.push_back(point_of(c->Pole(i)));
+    data.points.push_back(pole_of(c->Pole(i)));
     if (c->IsRational()) data.weights.push_back(c->Weight(i));
   }
   return data;
 }
 
-NurbsCurveData data_of(const Handle(Geom2d_BSplineCurve) & c) {
-  NurbsCurveData data;
-  data.degree = c->Degree();
-  data.knots = numbers(c->KnotSequence());
-  for (int i = 1; i <= c->NbPoles(); ++i) {
-    data.points.push_back({c->Pole(i).X(), c->Pole(i).Y(), 0});
-    if (c->IsRational()) data.weights.push_back(c->Weight(i));
-  }
-  return data;
+/// Whether ours has places wherever an edge goes.
+bool is_for(const NurbsCurveData& data, std::array<double, 2> range) {
+  return is_usable(data.knots, data.degree) && covers(data.knots, data.degree, range[0], range[1]);
 }
 
 CurveData spline_data(const Handle(Geom_Curve) & given, std::array<double, 2> range) {
   Handle(Geom_BSplineCurve) c = Handle(Geom_BSplineCurve)::DownCast(given);
   if (c.IsNull()) c = GeomConvert::CurveToBSplineCurve(given);
-  if (c->IsPeriodic()) {
-    c = Handle(Geom_BSplineCurve)::DownCast(c->Copy());
-    c->SetNotPeriodic();
-  }
   CurveData data;
   data.kind = CurveData::Kind::nurbs;
-  data.nurbs = data_of(c);
-  if (is_usable(data.nurbs.knots, data.nurbs.degree) && covers(data.nurbs.knots, data.nurbs.degree, range[0], range[1]))
-    return data;
-  return other_curve(given);
+  data.nurbs = nurbs_of(c);
+  return is_for(data.nurbs, range) ? data : other_curve(given);
 }
 
 ParameterCurveData other_parameter_curve(const Handle(Geom2d_Curve) & curve) {
@@ -173,16 +170,10 @@ ParameterCurveData other_parameter_curve(const Handle(Geom2d_Curve) & curve) {
 ParameterCurveData spline_data(const Handle(Geom2d_Curve) & given, std::array<double, 2> range) {
   Handle(Geom2d_BSplineCurve) c = Handle(Geom2d_BSplineCurve)::DownCast(given);
   if (c.IsNull()) c = Geom2dConvert::CurveToBSplineCurve(given);
-  if (c->IsPeriodic()) {
-    c = Handle(Geom2d_BSplineCurve)::DownCast(c->Copy());
-    c->SetNotPeriodic();
-  }
   ParameterCurveData data;
   data.kind = ParameterCurveData::Kind::nurbs;
-  data.nurbs = data_of(c);
-  if (is_usable(data.nurbs.knots, data.nurbs.degree) && covers(data.nurbs.knots, data.nurbs.degree, range[0], range[1]))
-    return data;
-  return other_parameter_curve(given);
+  data.nurbs = nurbs_of(c);
+  return is_for(data.nurbs, range) ? data : other_parameter_curve(given);
 }
 
 /// Where it has places, and periods, as OpenCASCADE says.

@@ -3,6 +3,7 @@
 
 #include "brep_sizes/size_parts.hpp"
 #include "delfront/errors.hpp"
+#include "delfront/uniform_size.hpp"
 #include "sizing/geometry_facets.hpp"
 
 namespace delfront {
@@ -10,17 +11,6 @@ namespace {
 
 constexpr double kLookShare = 0.05;   ///< of the extent: sides of the first grid
 constexpr double kLeastShare = 1e-3;  ///< of the extent: bends that need shorter ones are not followed
-
-class ConstantSize : public SizeField {
- public:
-  explicit ConstantSize(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
-  double lower_bound(const Box&) const override { return h_; }
-  double largest() const override { return h_; }
-
- private:
-  double h_;
-};
 
 }  // namespace
 
@@ -36,7 +26,7 @@ BrepLook look_at_brep(const Brep& brep, Context& context) {
   Context quiet;  // a look only
   quiet.threads = context.threads;
   quiet.cancel = context.cancel;
-  look.grid = grid_brep(brep, ConstantSize(kLookShare * look.extent), how, look.report, quiet);
+  look.grid = grid_brep(brep, UniformSize(kLookShare * look.extent), how, look.report, quiet);
   return look;
 }
 

@@ -14,6 +14,7 @@
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
 #include "delfront/size_sources.hpp"
+#include "delfront/uniform_size.hpp"
 #include "pipeline/boundaries.hpp"
 #include "sizing/asked_sizes.hpp"
 
@@ -24,18 +25,6 @@ constexpr double kDeviationMargin = 0.4;  ///< of the deviation: sizes are for t
 constexpr double kUsualMargin = 0.3;      ///< the same where nothing is asked for: nothing but misses are beyond
 constexpr double kTurnMargin = 1.5;       ///< times that of cells a turn: neighbours that turn by more are regridded
 constexpr std::size_t kManySources = 200'000;
-
-/// The same size everywhere.
-class ConstantSize : public SizeField {
- public:
-  explicit ConstantSize(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
-  double lower_bound(const Box&) const override { return h_; }
-  double largest() const override { return h_; }
-
- private:
-  double h_;
-};
 
 /// Which space is gridded: gaps matter there.
 GapSizes::Side gridded_side(const DomainOptions& domain) {
@@ -123,7 +112,7 @@ std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook
                     found.report.smallest, wish.hmax, found.report.num_sources, found.report.num_at_hmin,
                     found.report.smallest_at.x, found.report.smallest_at.y, found.report.smallest_at.z));
   if (found.sources.size() > kManySources) merge_close_sources(found);
-  std::vector<std::shared_ptr<const SizeField>> parts = {std::make_shared<ConstantSize>(wish.hmax), std::move(asked)};
+  std::vector<std::shared_ptr<const SizeField>> parts = {std::make_shared<UniformSize>(wish.hmax), std::move(asked)};
   if (!found.sources.empty())
     parts.push_back(build_source_size_field(std::move(found.sources), {.growth = growth_asked(options.size)}, context));
   return combine_size_fields(std::move(parts), options.size.hmin ? wish.hmin : 0, wish.hmax);

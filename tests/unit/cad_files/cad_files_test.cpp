@@ -13,6 +13,7 @@
 #include "delfront/cad.hpp"
 #include "delfront/model.hpp"
 #include "delfront/surface_check.hpp"
+#include "delfront/uniform_size.hpp"
 #include "occ_files.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "support/support.hpp"
@@ -21,17 +22,6 @@ namespace delfront {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-class SameSize : public SizeField {
- public:
-  explicit SameSize(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
-  double lower_bound(const Box&) const override { return h_; }
-  double largest() const override { return h_; }
-
- private:
-  double h_;
-};
 
 struct Read {
   Brep brep;
@@ -48,7 +38,7 @@ Read read(const std::string& path, const CadOptions& options = {}) {
 SurfaceReport grid(const Brep& brep, double h, Model* made = nullptr) {
   Context context;
   BrepGridReport report;
-  Model model = grid_brep(brep, SameSize(h), {}, report, context);
+  Model model = grid_brep(brep, UniformSize(h), {}, report, context);
   const SurfaceReport facts = check_surface(model, context);
   if (made) *made = std::move(model);
   return facts;

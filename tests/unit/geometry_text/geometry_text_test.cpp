@@ -10,6 +10,7 @@
 
 #include "delfront/errors.hpp"
 #include "delfront/surface_check.hpp"
+#include "delfront/uniform_size.hpp"
 #include "support/errors.hpp"
 
 namespace delfront {
@@ -18,16 +19,6 @@ namespace {
 using namespace fixtures;
 
 constexpr double kPi = std::numbers::pi;
-
-class Even : public SizeField {
- public:
-  explicit Even(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
-  double lower_bound(const Box&) const override { return h_; }
-
- private:
-  double h_;
-};
 
 Brep brep_of(const std::string& text) { return build_brep(parse_geometry(text, "part.geom.toml"), "part.geom.toml"); }
 
@@ -40,7 +31,7 @@ struct Looked {
 Looked look_at(const std::string& text, double h) {
   Looked looked;
   Context context;
-  looked.model = grid_brep(brep_of(text), Even(h), {}, looked.grid, context);
+  looked.model = grid_brep(brep_of(text), UniformSize(h), {}, looked.grid, context);
   looked.surface = check_surface(looked.model, context);
   return looked;
 }

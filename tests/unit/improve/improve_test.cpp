@@ -3,17 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "delfront/uniform_size.hpp"
 #include "support/tet_fixtures.hpp"
 #include "tetra/quality.hpp"
 
 namespace delfront {
 namespace {
-
-class UnitSize : public SizeField {
- public:
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), 1); }
-  double lower_bound(const Box&) const override { return 1; }
-};
 
 struct Worst {
   double least = 180, greatest = 0;  // degrees
@@ -37,7 +32,7 @@ ImproveReport improve_and_check(TetComplex& c, const ImproveOptions& options = {
   const double volume = fixtures::total_volume(c);
   const auto vertices = c.vertex;
   Context context;
-  const ImproveReport report = improve_complex(c, UnitSize(), options, context);
+  const ImproveReport report = improve_complex(c, UniformSize(1), options, context);
   EXPECT_EQ(c.find_defect(), "");
   EXPECT_NEAR(fixtures::total_volume(c), volume, 1e-12 * volume);
   EXPECT_EQ(fixtures::constrained_faces(c), faces);
@@ -162,7 +157,7 @@ TEST(Improve, stops_when_cancelled_and_leaves_a_valid_complex) {
     EXPECT_EQ(progress.stage, "improve");
     if (++calls == 5) cancel = true;
   };
-  EXPECT_THROW(improve_complex(c, UnitSize(), {}, context), Cancelled);
+  EXPECT_THROW(improve_complex(c, UniformSize(1), {}, context), Cancelled);
   EXPECT_EQ(c.find_defect(), "");
 }
 

@@ -10,25 +10,13 @@
 
 #include "delfront/surface_check.hpp"
 #include "delfront/surface_grid.hpp"
+#include "delfront/uniform_size.hpp"
 #include "spatial/bvh.hpp"
 #include "support/support.hpp"
 
 namespace delfront::fixtures {
 
 inline constexpr double kPi = 3.14159265358979323846;
-
-class UniformSize : public SizeField {
- public:
-  explicit UniformSize(double h) : h_(h) {}
-  void sizes(std::span<const Point> at, std::span<double> size) const override {
-    for (std::size_t i = 0; i < at.size(); ++i) size[i] = h_;
-  }
-  double lower_bound(const Box&) const override { return h_; }
-  double largest() const override { return h_; }
-
- private:
-  double h_;
-};
 
 /// @brief Size h at x = 0, rising by slope with |x|.
 class RisingSize : public SizeField {

@@ -10,6 +10,7 @@
 #include "delfront/grid_check.hpp"
 #include "delfront/size_field.hpp"
 #include "delfront/surface_check.hpp"
+#include "delfront/uniform_size.hpp"
 #include "support/plc_fixtures.hpp"
 #include "support/support.hpp"
 #include "support/tet_fixtures.hpp"
@@ -70,17 +71,6 @@ TEST(FrontObstacles, segments_and_tets_on_a_lattice_as_by_fractions) {
   EXPECT_GT(apart, 10000);
 }
 
-/// One size everywhere.
-class Even : public SizeField {
- public:
-  explicit Even(double h) : h_(h) {}
-  void sizes(std::span<const Point>, std::span<double> size) const override { std::fill(size.begin(), size.end(), h_); }
-  double lower_bound(const Box&) const override { return h_; }
-
- private:
-  double h_;
-};
-
 struct Filled {
   BoundaryGrid grid;
   RecoveryReport recovery;
@@ -123,7 +113,7 @@ TEST(FrontEmbedded, one_edge_in_a_cube) {
   for (const double length : {0.01, 0.2, 0.6}) {
     Facets body = gridded_cube(4);
     body.curves.push_back({body.add_point({0.2, 0.43, 0.51}), body.add_point({0.2 + length, 0.57, 0.49})});
-    EXPECT_EQ(expect_embedded(body, Even(0.25)).recovery.curve_edges, 1u) << length;
+    EXPECT_EQ(expect_embedded(body, UniformSize(0.25)).recovery.curve_edges, 1u) << length;
   }
 }
 
@@ -136,7 +126,7 @@ TEST(FrontEmbedded, a_ring) {
   }
   ring.push_back(ring.front());
   body.curves.push_back(ring);
-  EXPECT_EQ(expect_embedded(body, Even(0.14)).recovery.curve_edges, 24u);
+  EXPECT_EQ(expect_embedded(body, UniformSize(0.14)).recovery.curve_edges, 24u);
 }
 
 /// From a vertex of the sphere to the opposite one.
@@ -160,7 +150,7 @@ TEST(FrontEmbedded, a_chain_from_wall_to_wall) {
     }
     chain.push_back(end);
     body.curves.push_back(chain);
-    EXPECT_EQ(expect_embedded(body, Even(0.14)).recovery.curve_edges, static_cast<std::size_t>(pieces));
+    EXPECT_EQ(expect_embedded(body, UniformSize(0.14)).recovery.curve_edges, static_cast<std::size_t>(pieces));
   }
 }
 
@@ -176,7 +166,7 @@ TEST(FrontEmbedded, three_curves_that_cross_in_one_corner) {
     }
     body.curves.push_back(curve);
   }
-  EXPECT_EQ(expect_embedded(body, Even(0.2)).recovery.curve_edges, 24u);
+  EXPECT_EQ(expect_embedded(body, UniformSize(0.2)).recovery.curve_edges, 24u);
 }
 
 TEST(FrontEmbedded, a_thousand_points) {
@@ -185,7 +175,7 @@ TEST(FrontEmbedded, a_thousand_points) {
   for (const double h : {0.2, 0.05}) {
     Facets body = gridded_cube(5);
     for (int i = 0; i < 1000; ++i) body.corners.push_back(body.add_point({unit(random), unit(random), unit(random)}));
-    EXPECT_EQ(expect_embedded(body, Even(h)).recovery.embedded_points, 1000u);
+    EXPECT_EQ(expect_embedded(body, UniformSize(h)).recovery.embedded_points, 1000u);
   }
 }
 
@@ -196,7 +186,7 @@ TEST(FrontEmbedded, points_and_edges_close_to_a_wall) {
     body.curves.push_back(
         {body.add_point({0.15 + 0.17 * i, 0.5, 1 - 1e-6}), body.add_point({0.2 + 0.17 * i, 0.6, 1 - 2e-6})});
   }
-  EXPECT_EQ(expect_embedded(body, Even(0.25)).recovery.embedded_points, 5u);
+  EXPECT_EQ(expect_embedded(body, UniformSize(0.25)).recovery.embedded_points, 5u);
 }
 
 TEST(FrontEmbedded, several_regions) {
@@ -209,7 +199,7 @@ TEST(FrontEmbedded, several_regions) {
     body.curves.push_back({body.add_point({x, 0.4, 0.4}), body.add_point({x + 0.1, 0.6, 0.5})});
     body.corners.push_back(body.add_point({x, 0.7, 0.7}));
   }
-  const Filled r = expect_embedded(body, Even(0.3));
+  const Filled r = expect_embedded(body, UniformSize(0.3));
   EXPECT_EQ(r.grid.num_regions, 2u);
   EXPECT_EQ(r.recovery.curve_edges, 4u);
 }
@@ -229,12 +219,12 @@ TEST(FrontEmbedded, the_same_grid_for_any_number_of_threads) {
   const BoundaryGrid empty = recovered(model, recovery);
   BoundaryGrid first = empty;
   Context context;
-  const FrontReport report = fill_by_front(first, Even(0.06), context);
+  const FrontReport report = fill_by_front(first, UniformSize(0.06), context);
   EXPECT_EQ(report.gave_up, "");
   for (const int threads : {2, 3}) {
     BoundaryGrid other = empty;
     context.threads = threads;
-    fill_by_front(other, Even(0.06), context);
+    fill_by_front(other, UniformSize(0.06), context);
     EXPECT_EQ(first.complex.node, other.complex.node);
     EXPECT_EQ(first.complex.neigh, other.complex.neigh);
   }
@@ -284,7 +274,7 @@ TEST(FrontEmbedded, random_rooms) {
     if (has_errors(check_surface(to_model(body), context).findings)) continue;  // chains that meet
     ++tried;
     const double size = std::pow(10.0, -0.5 - std::uniform_real_distribution<double>(0, 0.6)(random));
-    expect_embedded(body, Even(size));
+    expect_embedded(body, UniformSize(size));
     if (HasFailure()) return;
   }
   EXPECT_GE(2 * tried, cases);
