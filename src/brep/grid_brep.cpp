@@ -48,9 +48,8 @@ class BrepGridder {
   Model run() {
     for (report_.rounds = 1; report_.rounds <= kMostRounds; ++report_.rounds) {
       context_.progress("surface", report_.rounds - 1, 0, "rounds");
-      divide();
-      parallel_for(context_.threads, grids_.size(), [&](std::size_t f) { grid_face(FaceId(f)); });
-      if (!mend_faces()) continue;
+      if (!grid_faces()) continue;
+      const StageTimer timer(context_, "crossings");
       Model model = assemble_brep(brep_, edges_, grids_, num_vertices_, report_.entity,
                                   options_.keeps_parameters ? &report_.corner_uv : nullptr);
       if (options_.checks_crossings && !mend_crossings(model)) continue;
@@ -61,6 +60,14 @@ class BrepGridder {
   }
 
  private:
+  /// @return whether all have a grid
+  bool grid_faces() {
+    const StageTimer timer(context_, "surface");
+    divide();
+    parallel_for(context_.threads, grids_.size(), [&](std::size_t f) { grid_face(FaceId(f)); });
+    return mend_faces();
+  }
+
   /// F3, twice: from sides that are shorter than asked for, sizes grow.
   void divide() {
     working_.lower(lowered_, context_);
@@ -245,7 +252,6 @@ Model grid_brep(const Brep& brep, const SizeField& size, const BrepOptions& opti
                 Context& context) {
   check_floating_point_mode();
   report = {};
-  const StageTimer timer(context, "surface");
   check_brep(brep);
   return BrepGridder(brep, size, options, report, context).run();
 }

@@ -62,6 +62,7 @@ Model grid_brep_to_goals(const Brep& brep, std::shared_ptr<const SizeField> size
       report.stopped = fmt::format("round {} has no grid: {}", round, e.what());
       return best;
     }
+    const StageTimer timer(context, "measure");
     report.rounds.push_back(measure_brep_grid(brep, grid, made, *wanted, goals, &lowered, context));
     best = std::move(grid);
     report.grid = std::move(made);
