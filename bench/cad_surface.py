@@ -127,6 +127,7 @@ def part_largest(options, folder: Path) -> str:
             try:
                 size = cad.our_size(options.program, file, count, folder)
             except RuntimeError as reason:
+                say(f"{file.name}: {reason}")
                 text += f"| {file.name} | delfront {options.version} | {str(reason)[:120].replace('|', '/')} |" + " |" * 8 + "\n"
                 break
             tools = [t for t in options.tools if t != "Netgen" or count <= options.netgen_up_to]

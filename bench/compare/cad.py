@@ -13,7 +13,8 @@ import numpy as np
 from . import grids, peers
 from .running import Tool
 
-LIMIT = 240  # seconds to find a size
+LIMIT = 240  # seconds in which a peer has to find its size
+OUR_LIMIT = 60  # seconds of one run of ours that looks for one
 TRIES = 8
 NEAR = 0.03  # of a count
 PEERS = {"Gmsh": ("gmsh_cad.py", "gmsh"), "Netgen": ("netgen_cad.py", "netgen_mesher")}
@@ -85,7 +86,10 @@ def ours(program: str, version: str, file: Path, words: list[str], threads: int 
 def our_run(program: str, file: Path, words: list[str], folder: Path) -> dict:
     """@return facts  @throws RuntimeError  what it said"""
     command = [program, "mesh", str(file), *words, "-o", "o.stl", *SURFACE]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=LIMIT, check=False)
+    try:
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=OUR_LIMIT, check=False)
+    except subprocess.TimeoutExpired:
+        raise RuntimeError(f"no grid in {OUR_LIMIT} s") from None
     if done.returncode != 0:
         raise RuntimeError((done.stderr.strip().splitlines() or ["no grid"])[-1])
     return our_facts(folder, "")
@@ -101,7 +105,7 @@ def our_size(program: str, file: Path, triangles: int, folder: Path) -> float:
         best = min(best, (abs(math.log(ratio)), size))
         if best[0] < NEAR:
             break
-        size *= math.sqrt(ratio)
+        size *= min(2.0, max(0.25, math.sqrt(ratio)))
     return best[1]
 
 
@@ -134,7 +138,13 @@ def peer(name: str, file: Path, triangles: int, places: int, folder: Path) -> To
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     try:
         done = subprocess.run(
-            [*words, "find", str(triangles)], cwd=folder, capture_output=True, text=True, timeout=LIMIT, env=environment, check=False
+            [*words, "find", str(triangles)],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            env=environment,
+            check=False,
         )
         told, said = last_json(done.stdout), (done.stderr.strip().splitlines() or [f"status {done.returncode}"])[-1]
     except subprocess.TimeoutExpired:

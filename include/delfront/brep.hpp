@@ -156,6 +156,7 @@ struct BrepOptions {
   bool checks_crossings = true;   ///< the whole surface, exactly
   bool keeps_parameters = false;  ///< BrepGridReport::corner_uv is filled
   double least_size = 0;          ///< of sides that are made shorter for their turn
+  int most_rounds = 8;            ///< of gridding with lower sizes where a face or the whole failed
 };
 
 /// @brief One face's grid.

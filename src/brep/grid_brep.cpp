@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 #include "base/parallel.hpp"
 #include "brep/assemble_brep.hpp"
@@ -19,7 +20,6 @@
 namespace delfront {
 namespace {
 
-constexpr std::size_t kMostRounds = 8;
 constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
@@ -40,13 +40,14 @@ class BrepGridder {
         working_(size, nullptr),
         wanted_(working_, options.most_turn_deg * kDegree, options.least_size),
         grids_(brep.faces.size()),
-        failures_(brep.faces.size(), 0) {
+        failures_(brep.faces.size(), 0),
+        has_failed_(brep.faces.size(), false) {
     wanted_.look_at(brep);
     lowered_.growth = kGrowth;
   }
 
   Model run() {
-    for (report_.rounds = 1; report_.rounds <= kMostRounds; ++report_.rounds) {
+    for (report_.rounds = 1; report_.rounds <= std::size_t(options_.most_rounds); ++report_.rounds) {
       context_.progress("surface", report_.rounds - 1, 0, "rounds");
       if (!grid_faces()) continue;
       const StageTimer timer(context_, "crossings");
@@ -63,9 +64,47 @@ class BrepGridder {
   /// @return whether all have a grid
   bool grid_faces() {
     const StageTimer timer(context_, "surface");
+    const Array<EdgeId, EdgePoints> before = edges_;
+    keep_sizes();
     divide();
-    parallel_for(context_.threads, grids_.size(), [&](std::size_t f) { grid_face(FaceId(f)); });
+    parallel_for(context_.threads, grids_.size(), [&](std::size_t f) {
+      if (!takes_again(FaceId(f), before)) grid_face(FaceId(f));
+    });
     return mend_faces();
+  }
+
+  /// After a round that failed: sizes at the points of the faces that did not.
+  void keep_sizes() {
+    sizes_.assign(grids_.size(), {});
+    if (report_.rounds == 1) return;
+    parallel_for(context_.threads, grids_.size(), [&](std::size_t f) {
+      if (!has_failed_[f]) sizes_[f] = sizes_at(grids_[FaceId(f)]);
+    });
+    has_failed_.assign(grids_.size(), false);
+  }
+  std::vector<double> sizes_at(const FaceGrid& grid) const {
+    std::vector<Point> at;
+    for (const FacePoint& p : grid.points) at.push_back(p.at);
+    std::vector<double> size(at.size());
+    working_.sizes(at, size);
+    return size;
+  }
+
+  /// The last round's grid of a face, where neither its border nor the sizes at its points have changed.
+  bool takes_again(FaceId f, const Array<EdgeId, EdgePoints>& before) {
+    if (sizes_[f.index()].empty()) return false;
+    std::unordered_map<std::uint32_t, std::uint32_t> number;
+    for (const auto& loop : brep_.faces[f].loops)
+      for (const BrepUse& use : loop) {
+        const EdgePoints &was = before[use.edge], &is = edges_[use.edge];
+        if (was.t != is.t || was.at != is.at) return false;
+        for (std::size_t i = 0; i < was.vertex.size(); ++i) number[was.vertex[i]] = is.vertex[i];
+      }
+    FaceGrid& grid = grids_[f];
+    if (sizes_at(grid) != sizes_[f.index()]) return false;
+    for (FacePoint& p : grid.points)
+      if (p.vertex != kNoVertex) p.vertex = number.at(p.vertex);
+    return true;
   }
 
   /// F3, twice: from sides that are shorter than asked for, sizes grow.
@@ -161,6 +200,7 @@ class BrepGridder {
     const BrepFace& face = brep_.faces[f];
     why_ = face.name.empty() ? fmt::format("face {}: {}", f.value, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
+    has_failed_[f.index()] = true;
     lower_at(at);
     const auto& points = grids_[f].points;
     if (++failures_[f.index()] % kAllOver == 0)
@@ -241,6 +281,8 @@ class BrepGridder {
   Array<EdgeId, EdgePoints> edges_;
   Array<FaceId, FaceGrid> grids_;
   std::vector<int> failures_;
+  std::vector<bool> has_failed_;            ///< by face: in the last round
+  std::vector<std::vector<double>> sizes_;  ///< by face: at its points in the last round; empty: it failed
   std::size_t num_vertices_ = 0;
   std::string why_;
   Point why_at_;
