@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
 #include "base/parallel.hpp"
@@ -24,7 +25,7 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
-constexpr double kFairAngleDeg = 3;          ///< below, another way is tried
+constexpr double kGoodAngleDeg = 20;         ///< charts far from lengths in space are good enough with that
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
 constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
@@ -140,8 +141,8 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped; else directly in space, or in charts that are far from lengths in space where that gives better angles.
-  /// Along long borders those charts come first.
+  /// Mapped; else in charts that are far from lengths in space where their angles are good, or borders long; else
+  /// directly in space, or in those charts, as angles are better.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
@@ -167,12 +168,13 @@ class BrepGridder {
       return is_done;
     };
     const bool is_free = options_.method == BrepOptions::Method::choose;
-    if (is_free && border.points.size() > kMostForDirect && fill([&] { map(true); })) return;
-    if (grid_in_space() && smallest_angle_of(grid) > kFairAngleDeg) return;
-    if (!is_free) return;
-    const FaceGrid direct = grid;
-    if (!fill([&] { map(true); }) || (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
-      grid = direct;
+    std::optional<FaceGrid> charted;
+    if (is_free && fill([&] { map(true); })) {
+      if (border.points.size() > kMostForDirect || smallest_angle_of(grid) > kGoodAngleDeg) return;
+      charted = grid;
+    }
+    if (grid_in_space() && (!charted || smallest_angle_of(grid) >= smallest_angle_of(*charted))) return;
+    if (charted) grid = std::move(*charted);
   }
 
   double tolerance_of(const BrepFace& face) const {

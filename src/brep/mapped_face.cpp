@@ -24,6 +24,7 @@ constexpr double kMostSkew = 1 - 1e-9;  ///< cosine between what the axes are in
 constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
 constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
 constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
+constexpr double kEven = 1.02;          ///< of stretch, and of lengths anywhere over those elsewhere
 constexpr int kSamples = 17;            ///< each way, to look at a chart
 constexpr std::size_t kMostOfLoop = 200;
 constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
@@ -132,17 +133,28 @@ std::vector<Point2> places_to_look_at(const FaceGrid& grid, const FacePart& part
 ChartLook look_at(const Chart& chart, std::span<const Point2> places, const ParameterBox& box, const WantedSize& size) {
   ChartLook look;
   const auto scale = [](const Chart::Place& p) { return std::sqrt(length(cross(p.x, p.y))); };
+  std::vector<Chart::Place> found;
+  std::vector<Point> at;
+  double least = 1e300, most = 0;
   for (const Point2 uv : places) {
-    const Point2 xy = chart.to_chart(uv);
-    const Chart::Place place = chart.place(xy);
-    const double stretch = Chart::stretch(place);
-    if (stretch > look.stretch) {
-      look.stretch = stretch;
-      look.at = place.at;
-    }
+    found.push_back(chart.place(chart.to_chart(uv)));
+    at.push_back(found.back().at);
+    least = std::min(least, scale(found.back()));
+    most = std::max(most, scale(found.back()));
+    const double stretch = Chart::stretch(found.back());
+    if (!(stretch > look.stretch)) continue;
+    look.stretch = stretch;
+    look.at = found.back().at;
+  }
+  if (look.stretch < kEven && most < kEven * least) return look;  // a plane, a cylinder: nothing changes
+  std::vector<double> asked(at.size());
+  size.asked().sizes(at, asked);  // together: neighbours in the list are near in space
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Chart::Place& place = found[i];
+    const Point2 xy = chart.to_chart(places[i]);
     // one wanted side on, but no farther than the part goes
     const double bend = largest_curvature(chart.surface().derivatives(place.uv));
-    const double here = scale(place), h = size.lowered(size.asked().size(place.at), bend, place.at);
+    const double here = scale(place), h = size.lowered(asked[i], bend, place.at);
     for (int k = 0; k < 4; ++k) {
       const double ahead = (k % 2 ? -1 : 1) * h / std::max(length(k < 2 ? place.x : place.y), 1e-300);
       const Point2 to = chart.to_uv(k < 2 ? Point2{xy.x + ahead, xy.y} : Point2{xy.x, xy.y + ahead});
