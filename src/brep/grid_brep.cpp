@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <unordered_map>
 
 #include "base/parallel.hpp"
@@ -25,7 +24,8 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
-constexpr double kGoodAngleDeg = 20;         ///< charts far from lengths in space are good enough with that
+constexpr double kFairAngleDeg = 3;          ///< below, another way is tried
+constexpr double kGoodAngleDeg = 20;         ///< stretched charts are good enough with that
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
 constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
@@ -141,8 +141,8 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped; else in charts that are far from lengths in space where their angles are good, or borders long; else
-  /// directly in space, or in those charts, as angles are better.
+  /// Mapped, also in charts that are stretched where angles are good; else directly in space, or in charts that are far
+  /// from lengths in space where that gives better angles. Along long borders those charts come first.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
@@ -158,8 +158,8 @@ class BrepGridder {
       check_face_grid(face, most_angle, tolerance_of(face), grid);
       return grid.gave_up.empty();
     };
-    const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
-    if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
+    const auto map = [&](Charts charts) { grid_mapped(face, wanted_, options_, charts, grid, context_); };
+    if (options_.method != BrepOptions::Method::direct && fill([&] { map(Charts::near); })) return;
     if (options_.method == BrepOptions::Method::mapped) return;
     const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
     const auto grid_in_space = [&] {
@@ -168,13 +168,17 @@ class BrepGridder {
       return is_done;
     };
     const bool is_free = options_.method == BrepOptions::Method::choose;
-    std::optional<FaceGrid> charted;
-    if (is_free && fill([&] { map(true); })) {
-      if (border.points.size() > kMostForDirect || smallest_angle_of(grid) > kGoodAngleDeg) return;
-      charted = grid;
-    }
-    if (grid_in_space() && (!charted || smallest_angle_of(grid) >= smallest_angle_of(*charted))) return;
-    if (charted) grid = std::move(*charted);
+    // where the direct way would take seconds, any chart; where a chart is stretched but good, no support is made
+    const bool is_long = border.points.size() > kMostForDirect;
+    if (is_free && fill([&] { map(is_long ? Charts::any : Charts::stretched); }) &&
+        (is_long || smallest_angle_of(grid) > kGoodAngleDeg))
+      return;
+    if (grid_in_space() && smallest_angle_of(grid) > kFairAngleDeg) return;
+    if (!is_free) return;
+    const FaceGrid direct = grid;
+    if (!fill([&] { map(Charts::any); }) ||
+        (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
+      grid = direct;
   }
 
   double tolerance_of(const BrepFace& face) const {
