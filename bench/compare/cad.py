@@ -78,7 +78,7 @@ def ours(program: str, version: str, file: Path, words: list[str], threads: int 
         phase=lambda folder, log: stages(folder)["surface"],
         facts=our_facts,
         outputs=["report.json"],
-        extra_outputs=[output],
+        extra_outputs=["o.mesh", "o.stl"],
         details=our_details,
     )
 
@@ -86,6 +86,7 @@ def ours(program: str, version: str, file: Path, words: list[str], threads: int 
 def our_run(program: str, file: Path, words: list[str], folder: Path) -> dict:
     """@return facts  @throws RuntimeError  what it said"""
     command = [program, "mesh", str(file), *words, "-o", "o.stl", *SURFACE]
+    (folder / "o.mesh").unlink(missing_ok=True)  # of another file
     try:
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=OUR_LIMIT, check=False)
     except subprocess.TimeoutExpired:

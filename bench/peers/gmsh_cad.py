@@ -16,8 +16,8 @@ import time
 import gmsh
 import numpy as np
 
-TRIES = 8
-NEAR = 0.03  # of the count: near enough
+TRIES = 6
+NEAR = 0.07  # of the count: near enough
 
 
 def grid(size: float) -> float:

@@ -19,8 +19,8 @@ import numpy as np
 import pyngcore
 from netgen import meshing
 
-TRIES = 8
-NEAR = 0.05  # of the count: near enough
+TRIES = 6
+NEAR = 0.08  # of the count: near enough
 USUAL_SAFETY = 2.0
 
 

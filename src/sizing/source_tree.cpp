@@ -41,7 +41,7 @@ constexpr float kFar = 1e18f;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxStack = 1024;  // seven left a level, 64 levels (see SourceTreeBuilder) and more
 
-constexpr std::size_t kPlacesOfSample = 512;  ///< for quantiles of some thirty sizes
+constexpr std::size_t kPlacesOfSample = 512;         ///< for quantiles of some thirty sizes
 constexpr std::size_t kChunk = 64, kLeastChunk = 8;  // places that share a frontier
 
 template <class Lanes>
