@@ -26,7 +26,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from compare import cad, machine, peers  # noqa: E402
 from compare.running import Limits, new_stamp, run_interleaved  # noqa: E402
-from compare.script import numbers, publish, replace_between, words  # noqa: E402
+from compare.script import numbers, publish, words  # noqa: E402
 
 PAGE = peers.ROOT / "docs" / "cad-speed.md"
 MAKER = "cad_surface.py"
@@ -66,7 +66,8 @@ def median(row: dict, key: str) -> float | None:
 def text_row(label: str, row: dict) -> str:
     tool = f"{row['tool']} {row['version']}"
     if row["failure"]:
-        return f"| {label} | {tool} | {row['failure'].replace('|', '/')[:120]} |" + " |" * 8
+        said = row["failure"].removeprefix("not installed: " if row["version"] else "")
+        return f"| {label} | {tool} | {said.replace('|', '/')[:120]} |" + " |" * 8
     facts, grid = row["facts"], median(row, "phase")
     rounds = facts.get("rounds", 1)
     cells = [label, tool, f"{facts['triangles']:,}", f"{grid:.2f}" + (f" ({rounds} rounds)" if rounds > 1 else "")]
@@ -169,16 +170,14 @@ def main() -> int:
         print(f"delfront: {missing}", file=sys.stderr)
         return 1
     options.version = peers.first_version(peers.output_of([options.program, "--version"]))
-    about = " ".join(" ".join(__doc__.split("\n\n")[2:3]).split())
-    text = f"{machine.describe()}; medians of {options.repeat}, by `bench/cad_surface.py --write-docs`; "
-    text += f"load average {machine.load():.1f} when it began (over 1: other work ran beside it).\n\n{about}\n\n"
     parts = {"files": part_files, "largest": part_largest, "model": part_model}
     with tempfile.TemporaryDirectory(prefix="delfront_cad_") as folder:
         for part in options.parts:
-            text += parts[part](options, Path(folder)) + "\n"
-            if options.write_docs:  # a long run: what there is stands if it is stopped
-                replace_between(PAGE, MAKER, text)
-    return publish(text, PAGE, MAKER, options.write_docs)
+            when = f"{machine.describe()}; medians of {options.repeat}, {new_stamp()}, load average {machine.load():.1f} before it "
+            when += "(over 1: other work ran beside it).\n\n"
+            title, text = parts[part](options, Path(folder)).split("\n\n", 1)
+            publish(f"{title}\n\n{when}{text}", PAGE, f"{MAKER} --parts {part}", options.write_docs)
+    return 0
 
 
 if __name__ == "__main__":

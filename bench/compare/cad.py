@@ -22,9 +22,11 @@ SURFACE = ["--stop-after", "surface", "--report", "report.json"]
 
 
 def copy_of(file: Path, folder: Path) -> Path:
-    """Peers know the text of EGADS files by another suffix, and without their first line."""
+    """Peers know suffixes in small letters, and the text of EGADS files by another and without its first line."""
     if file.suffix.lower() != ".egads":
-        return file
+        if file.suffix.islower():
+            return file
+        return Path(shutil.copy(file, folder / (file.stem + file.suffix.lower())))
     copy = folder / (file.stem + ".brep")
     text = file.read_text(encoding="latin-1")
     copy.write_text(text[text.index("\n") + 1 :] if text.startswith("DBRep") else text, encoding="latin-1")

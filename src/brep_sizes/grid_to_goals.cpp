@@ -14,7 +14,7 @@ constexpr double kGrowth = 1.3;      ///< of sizes from where they are lowered
 constexpr double kHelps = 0.95;      ///< of the places beyond the goals: a round that leaves more helps no more
 constexpr double kFaceShare = 0.88;  ///< of sizes, all over a face that misses a goal for the second time
 constexpr int kRoundsWithout = 2;    ///< help, before it ends
-constexpr int kRoundsOfBetter = 4;   ///< within a grid that is to be better than one there is
+constexpr int kRoundsOfBetter = 2;   ///< within a grid that is to be better than one there is
 
 std::size_t num_beyond(const BrepAccuracy& a) {
   return a.deviation.num_beyond + a.turn_deg.num_beyond + a.angle_deg.num_beyond;
