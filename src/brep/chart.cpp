@@ -9,6 +9,8 @@ namespace delfront {
 namespace {
 
 constexpr int kPieces = 256, kAcross = 9;  ///< of tables; samples across for means
+constexpr int kFewPieces = 32;             ///< of tables where lengths are even
+constexpr double kEven = 1.0001;           ///< ratio of lengths that are
 constexpr double kAlmostStraight = 1.01;   ///< ratio of slopes
 constexpr double kMostTurn = 1.9 * std::numbers::pi;
 constexpr double kLeastAround = 1e-3;                      ///< of the widest: another pole at the far end
@@ -61,26 +63,33 @@ Chart::Chart(const SmoothSurface& surface, const ParameterBox& box, Pole pole) :
 
 void Chart::make_linear(const ParameterBox& box) {
   const double wide = box.high.x - box.low.x, tall = box.high.y - box.low.y;
-  const auto table = [&](bool along_u) {
-    const double step = (along_u ? wide : tall) / kPieces;
-    std::vector<double> lengths(kPieces), values = {0};
+  const auto table = [&](bool along_u, int pieces) {
+    const double step = (along_u ? wide : tall) / pieces;
+    const auto count = static_cast<std::size_t>(pieces);
+    std::vector<double> lengths(count), values = {0};
     double all = 0;
-    for (int i = 0; i < kPieces; ++i) {
+    for (int i = 0; i < pieces; ++i) {
       for (int j = 0; j < kAcross; ++j) {
-        const double f = (i + 0.5) / kPieces, g = (j + 0.5) / kAcross;
+        const double f = (i + 0.5) / pieces, g = (j + 0.5) / kAcross;
         const SurfaceTangents s =
             surface_.tangents({box.low.x + (along_u ? f : g) * wide, box.low.y + (along_u ? g : f) * tall});
         lengths[std::size_t(i)] += length(along_u ? s.u : s.v) / kAcross;
       }
       all += lengths[std::size_t(i)];
     }
-    for (const double l : lengths) values.push_back(values.back() + std::max(l, 1e-3 * all / kPieces) * step);
-    return values;
+    for (const double l : lengths) values.push_back(values.back() + std::max(l, 1e-3 * all / pieces) * step);
+    const auto [least, most] = std::minmax_element(lengths.begin(), lengths.end());
+    return std::pair{values, *most <= kEven * *least};
   };
-  std::vector<double> u = table(true), v = table(false);
-  const double unit = std::max(u.back(), v.back());
-  u_ = RisingTable(box.low.x, wide / kPieces, in_units(std::move(u), unit));
-  v_ = RisingTable(box.low.y, tall / kPieces, in_units(std::move(v), unit));
+  const auto fine_table =
+      [&](bool along_u) {  // most faces are of planes and cylinders, whose lengths are the same all over
+        auto [values, is_even] = table(along_u, kFewPieces);
+        return is_even ? values : table(along_u, kPieces).first;
+      };
+  std::vector<double> u = fine_table(true), v = fine_table(false);
+  const double unit = std::max(u.back(), v.back()), num_u = double(u.size() - 1), num_v = double(v.size() - 1);
+  u_ = RisingTable(box.low.x, wide / num_u, in_units(std::move(u), unit));
+  v_ = RisingTable(box.low.y, tall / num_v, in_units(std::move(v), unit));
 }
 
 void Chart::make_polar(const ParameterBox& box) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "base/parallel.hpp"
+
 namespace delfront {
 namespace {
 
@@ -21,22 +23,39 @@ double rounded(double t, std::array<double, 2> range) {
   return (1 - share) * range[0] + share * range[1];
 }
 
-/// 1/h times the speed at equal steps of t: what adds up to the number of sides.
-std::vector<double> sample_density(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
-                                   const WantedSize& size, std::size_t panels) {
-  std::vector<CurveSample> samples(panels + 1);
-  std::vector<Point> at(panels + 1);
-  std::vector<double> h(panels + 1), density(panels + 1);
-  for (std::size_t i = 0; i <= panels; ++i) {
-    const double f = double(i) / double(panels);
-    samples[i] = sample((1 - f) * range[0] + f * range[1]);
-    at[i] = samples[i].at;
+/// 1/h times the speed at equal steps of t: what adds up to the number of sides. From one number of panels to twice
+/// that, every second place is known.
+class Density {
+ public:
+  Density(const std::function<CurveSample(double)>& sample, std::array<double, 2> range, const WantedSize& size)
+      : sample_(sample), range_(range), size_(size) {}
+
+  const std::vector<double>& at(std::size_t panels) {
+    const bool is_next = !value_.empty() && panels == 2 * (value_.size() - 1);
+    const std::size_t step = is_next ? 2 : 1;
+    std::vector<double> value(panels + 1);
+    for (std::size_t i = 0; is_next && i <= panels; i += 2) value[i] = value_[i / 2];
+    std::vector<CurveSample> samples;
+    std::vector<Point> at;
+    for (std::size_t i = step - 1; i <= panels; i += step) {
+      const double f = double(i) / double(panels);
+      samples.push_back(sample_((1 - f) * range_[0] + f * range_[1]));
+      at.push_back(samples.back().at);
+    }
+    std::vector<double> h(at.size());
+    size_.asked().sizes(at, h);
+    for (std::size_t k = 0; k < h.size(); ++k)
+      value[step - 1 + k * step] = length(samples[k].first) / size_.lowered(h[k], samples[k].curvature, at[k]);
+    value_ = std::move(value);
+    return value_;
   }
-  size.asked().sizes(at, h);
-  for (std::size_t i = 0; i <= panels; ++i)
-    density[i] = length(samples[i].first) / size.lowered(h[i], samples[i].curvature, at[i]);
-  return density;
-}
+
+ private:
+  const std::function<CurveSample(double)>& sample_;
+  std::array<double, 2> range_;
+  const WantedSize& size_;
+  std::vector<double> value_;
+};
 
 /// By Simpson's rule, to the middle of each pair of panels by the parabola through its three values.
 std::vector<double> integrate(const std::vector<double>& density, double step) {
@@ -53,10 +72,11 @@ std::vector<double> integrate(const std::vector<double>& density, double step) {
 
 std::vector<double> divide_curve(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
                                  const WantedSize& size, std::size_t least) {
+  Density densities(sample, range, size);
   std::vector<double> density, sum;
   double before = -1;
   for (std::size_t panels = kLeastPanels; panels <= kMostPanels; panels *= 2) {
-    density = sample_density(sample, range, size, panels);
+    density = densities.at(panels);
     sum = integrate(density, (range[1] - range[0]) / double(panels));
     const double now = sum.back();
     const bool is_fine = std::abs(now - before) <= kConverged * now || panels >= kEnoughPanels;
@@ -98,11 +118,13 @@ class Divider {
     Array<EdgeId, EdgePoints> points(brep_.edges.size());
     std::map<std::array<CornerId, 2>, int> single;  // open edges of one side, by their corners
     std::size_t next = brep_.corners.size();
-    for (std::size_t e = 0; e < points.size(); ++e) {
+    parallel_for(context.threads, points.size(), [&](std::size_t e) {
       context.check_limits();
+      points[EdgeId(e)].t = divide(e);
+    });
+    for (std::size_t e = 0; e < points.size(); ++e) {
       EdgePoints& made = points[EdgeId(e)];
       const BrepEdge& edge = brep_.edges[EdgeId(e)];
-      made.t = divide(e);
       if (!edge.is_degenerate() && made.t.size() == 2) {
         const auto [low, high] = std::minmax(edge.corners[0], edge.corners[1]);
         if (single[{low, high}]++ > 0) made.t.insert(made.t.begin() + 1, 0.5 * (made.t[0] + made.t[1]));

@@ -50,9 +50,11 @@ struct FaceGrid {
 /// @brief Points of the loops, from those of the edges.
 FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges);
 
+/// @brief Which charts are taken: near to lengths in space, stretched by more, however far from them.
+enum class Charts : std::uint8_t { near, stretched, any };
+
 /// @brief Fill a face in charts of its parameter plane (see chart.hpp). Says in gave_up why it could not.
-/// @param takes_any  charts are not refused for being far from lengths in space
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, bool takes_any,
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, Charts charts,
                  FaceGrid& grid, Context& context);
 
 /// @brief Fill a face by the front on discrete surfaces, over a fine triangulation of it; new points are put on the

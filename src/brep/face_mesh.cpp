@@ -17,6 +17,8 @@ constexpr std::size_t kMostLifts = 1000, kTrianglesPerLift = 20;  ///< searches 
 constexpr double kLeastGain = 1e-3;                               ///< of a squared sine
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
 constexpr double kAgree = 0.3;        ///< least cosine between triangles and the surface at their corners
+constexpr double kFirstReach = 0.25;  ///< of the mean side: a step of lifting at first
+constexpr double kLeastSlope = 1e-6;  ///< squared sine between tangents from where steps go by them
 constexpr double kMostLonger = 1.3;   ///< sides that a collapse makes, of the longest there
 constexpr std::uint32_t kNone = LinkedTriangles::kNone;
 
@@ -24,12 +26,13 @@ constexpr std::uint32_t kNone = LinkedTriangles::kNone;
 class SmallAngles {
  public:
   SmallAngles(const SmoothSurface& surface, const std::vector<std::uint64_t>& kept_sides, FaceGrid& grid)
-      : surface_(surface), kept_(kept_sides), grid_(grid) {}
+      : surface_(surface), box_(surface.box()), period_(surface.period()), kept_(kept_sides), grid_(grid) {}
 
   void run() {
     lifts_left_ = kMostLifts + grid_.triangles.size() / kTrianglesPerLift;
     for (int round = 0; round < kRounds && select(); ++round) {
       links_.link(std::move(triangles_), grid_.points.size());
+      is_calm_.assign(grid_.points.size(), false);
       std::size_t done = 0;
       for (int sweep = 0; sweep < kSweeps; ++sweep) {
         const std::size_t count = work();
@@ -101,7 +104,7 @@ class SmallAngles {
     const Point area = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
     for (const std::uint32_t p : t) {
       const FacePoint& point = grid_.points[p];
-      if (!point.is_pole && !(dot(area, surface_.normal(point.uv)) > kAgree * length(area))) return false;
+      if (!point.is_pole && !(dot(area, normal_at(point.uv)) > kAgree * length(area))) return false;
     }
     return true;
   }
@@ -152,6 +155,7 @@ class SmallAngles {
       if (distance(at(q), at(ring_.points[k])) > kMostLonger * longest) return false;
     }
     links_.collapse(p, q);
+    disturb_ring(q);
     return is_collapsed_ = true;
   }
 
@@ -183,6 +187,7 @@ class SmallAngles {
     const std::vector<std::uint32_t>& round = ring_.points;
     if (std::find(round.begin(), round.end(), free == c ? d : c) != round.end()) return false;
     links_.flip(side);
+    for (const std::uint32_t point : {a, b, c, d}) is_calm_[point] = false;
     return true;
   }
 
@@ -200,21 +205,50 @@ class SmallAngles {
     return worst;
   }
 
-  /// The point goes where the worst angle round it is largest, as far as steps along the surface find that.
+  Point normal_of(const SurfaceTangents& s, Point2 uv) const {
+    const Point n = cross(s.u, s.v);
+    const double area2 = squared_length(n);
+    return area2 > kLeastSlope * squared_length(s.u) * squared_length(s.v) ? n / std::sqrt(area2) : surface_.normal(uv);
+  }
+  Point normal_at(Point2 uv) const { return normal_of(surface_.tangents(uv), uv); }
+
+  /// The same of angles alone.
+  double worst_angle_round(Point place) const {
+    double worst = 1;
+    for (std::size_t i = 0; i < ring_.points.size(); ++i)
+      worst = std::min(
+          worst, smallest_squared_sine(place, at(ring_.points[i]), at(ring_.points[(i + 1) % ring_.points.size()])));
+    return worst;
+  }
+
+  /// Where a small step from a place in its tangent plane leads, by the mapping's slope; by search where it has none.
+  Point2 stepped(const SurfaceTangents& from, Point2 uv, Point step) const {
+    const double e = dot(from.u, from.u), f = dot(from.u, from.v), g = dot(from.v, from.v), det = e * g - f * f;
+    if (!(det > kLeastSlope * e * g)) return surface_.closest(from.at + step, uv);
+    const double du = dot(step, from.u), dv = dot(step, from.v);
+    const Point2 to = {uv.x + (g * du - f * dv) / det, uv.y + (e * dv - f * du) / det};
+    return {period_[0] > 0 ? to.x : std::clamp(to.x, box_.low.x, box_.high.x),
+            period_[1] > 0 ? to.y : std::clamp(to.y, box_.low.y, box_.high.y)};
+  }
+
+  /// The point goes where the worst angle round it is largest, as far as steps along the surface find that. A point for
+  /// which that found nothing is not tried again until something round it has changed.
   bool lift(std::uint32_t p) {
     FacePoint& moved = grid_.points[p];
-    if (moved.vertex != kNoVertex || !links_.ring(p, ring_)) return false;
+    if (moved.vertex != kNoVertex || is_calm_[p] || !links_.ring(p, ring_)) return false;
     if (lifts_left_ == 0) return false;
     --lifts_left_;
-    double reach = 0;
-    for (const std::uint32_t q : ring_.points) reach += 0.25 * distance(at(q), moved.at) / double(ring_.points.size());
-    Point normal = surface_.normal(moved.uv);
+    double side = 0;
+    for (const std::uint32_t q : ring_.points) side += distance(at(q), moved.at) / double(ring_.points.size());
+    SurfaceTangents here = surface_.tangents(moved.uv);
+    here.at = moved.at;
+    Point normal = normal_of(here, moved.uv);
     ring_normal_.clear();
     for (const std::uint32_t q : ring_.points) {
       const FacePoint& point = grid_.points[q];
-      ring_normal_.push_back(point.is_pole ? Point{} : surface_.normal(point.uv));
+      ring_normal_.push_back(point.is_pole ? Point{} : normal_at(point.uv));
     }
-    double worst = worst_of_ring(moved.at, normal);
+    double worst = worst_of_ring(moved.at, normal), share = kFirstReach;
     bool is_better = false;
     for (int k = 0; k < kMoves; ++k) {
       bool is_moved = false;
@@ -222,23 +256,37 @@ class SmallAngles {
                   f = cross(normal, e);
       for (int d = 0; d < kDirections && !is_moved; ++d) {
         const double angle = d * 2 * std::numbers::pi / kDirections;
-        const Point to = moved.at + reach * (std::cos(angle) * e + std::sin(angle) * f);
-        const Point2 uv = surface_.closest(to, moved.uv);
-        const Point place = surface_.at(uv), n = surface_.normal(uv);
-        const double then = worst_of_ring(place, n);
+        const Point step = share * side * (std::cos(angle) * e + std::sin(angle) * f);
+        // the surface is not far from its tangent plane: what does not come near there is not looked at
+        if (worst_angle_round(moved.at + step) < worst - share * share) continue;
+        const Point2 uv = stepped(here, moved.uv, step);
+        const SurfaceTangents there = surface_.tangents(uv);
+        const Point n = normal_of(there, uv);
+        const double then = worst_of_ring(there.at, n);
         if (then < worst + kLeastGain) continue;
-        moved.at = place;
+        moved.at = there.at;
         moved.uv = uv;
+        here = there;
         normal = n;
         worst = then;
         is_moved = is_better = true;
       }
-      if (!is_moved) reach *= 0.5;
+      if (!is_moved) share *= 0.5;
     }
+    if (is_better) disturb_ring(p);
+    is_calm_[p] = true;
     return is_better;
   }
 
+  /// Round a point something has changed: what its ring_ holds is to be looked at again.
+  void disturb_ring(std::uint32_t p) {
+    is_calm_[p] = false;
+    for (const std::uint32_t q : ring_.points) is_calm_[q] = false;
+  }
+
   const SmoothSurface& surface_;
+  ParameterBox box_;
+  std::array<double, 2> period_;
   const std::vector<std::uint64_t>& kept_;
   std::size_t lifts_left_ = 0;
   FaceGrid& grid_;
@@ -246,6 +294,7 @@ class SmallAngles {
   std::vector<std::size_t> given_;  ///< by triangle: the grid's
   LinkedTriangles links_;
   std::vector<std::uint8_t> mark_;  ///< by point: 1 to 3, outwards from small angles; 3 is the rim
+  std::vector<bool> is_calm_;       ///< by point: nothing round it has changed since it could not be lifted
   bool is_collapsed_ = false;
   TriangleRing ring_, fan_;
   std::vector<Point> ring_normal_;

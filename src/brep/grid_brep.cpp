@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <unordered_map>
 
 #include "base/parallel.hpp"
 #include "brep/assemble_brep.hpp"
@@ -20,12 +21,12 @@
 namespace delfront {
 namespace {
 
-constexpr std::size_t kMostRounds = 8;
 constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
 constexpr double kFairAngleDeg = 3;          ///< below, another way is tried
+constexpr double kGoodAngleDeg = 20;         ///< stretched charts are good enough with that
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
 constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
@@ -41,17 +42,17 @@ class BrepGridder {
         working_(size, nullptr),
         wanted_(working_, options.most_turn_deg * kDegree, options.least_size),
         grids_(brep.faces.size()),
-        failures_(brep.faces.size(), 0) {
+        failures_(brep.faces.size(), 0),
+        has_failed_(brep.faces.size(), false) {
     wanted_.look_at(brep);
     lowered_.growth = kGrowth;
   }
 
   Model run() {
-    for (report_.rounds = 1; report_.rounds <= kMostRounds; ++report_.rounds) {
+    for (report_.rounds = 1; report_.rounds <= std::size_t(options_.most_rounds); ++report_.rounds) {
       context_.progress("surface", report_.rounds - 1, 0, "rounds");
-      divide();
-      parallel_for(context_.threads, grids_.size(), [&](std::size_t f) { grid_face(FaceId(f)); });
-      if (!mend_faces()) continue;
+      if (!grid_faces()) continue;
+      const StageTimer timer(context_, "crossings");
       Model model = assemble();
       if (options_.checks_crossings && !mend_crossings(model)) continue;
       fill_report(model);
@@ -61,6 +62,52 @@ class BrepGridder {
   }
 
  private:
+  /// @return whether all have a grid
+  bool grid_faces() {
+    const StageTimer timer(context_, "surface");
+    const Array<EdgeId, EdgePoints> before = edges_;
+    keep_sizes();
+    divide();
+    parallel_for(context_.threads, grids_.size(), [&](std::size_t f) {
+      if (!takes_again(FaceId(f), before)) grid_face(FaceId(f));
+    });
+    return mend_faces();
+  }
+
+  /// After a round that failed: sizes at the points of the faces that did not.
+  void keep_sizes() {
+    sizes_.assign(grids_.size(), {});
+    if (report_.rounds == 1) return;
+    parallel_for(context_.threads, grids_.size(), [&](std::size_t f) {
+      if (!has_failed_[f]) sizes_[f] = sizes_at(grids_[FaceId(f)]);
+    });
+    has_failed_.assign(grids_.size(), false);
+  }
+  std::vector<double> sizes_at(const FaceGrid& grid) const {
+    std::vector<Point> at;
+    for (const FacePoint& p : grid.points) at.push_back(p.at);
+    std::vector<double> size(at.size());
+    working_.sizes(at, size);
+    return size;
+  }
+
+  /// The last round's grid of a face, where neither its border nor the sizes at its points have changed.
+  bool takes_again(FaceId f, const Array<EdgeId, EdgePoints>& before) {
+    if (sizes_[f.index()].empty()) return false;
+    std::unordered_map<std::uint32_t, std::uint32_t> number;
+    for (const auto& loop : brep_.faces[f].loops)
+      for (const BrepUse& use : loop) {
+        const EdgePoints &was = before[use.edge], &is = edges_[use.edge];
+        if (was.t != is.t || was.at != is.at) return false;
+        for (std::size_t i = 0; i < was.vertex.size(); ++i) number[was.vertex[i]] = is.vertex[i];
+      }
+    FaceGrid& grid = grids_[f];
+    if (sizes_at(grid) != sizes_[f.index()]) return false;
+    for (FacePoint& p : grid.points)
+      if (p.vertex != kNoVertex) p.vertex = number.at(p.vertex);
+    return true;
+  }
+
   Model assemble() {
     BrepGrid grid;
     const bool bridges = options_.bridge_below > 0 && is_bridged_;
@@ -107,8 +154,8 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped; else directly in space, or in charts that are far from lengths in space where that gives better angles.
-  /// Along long borders those charts come first.
+  /// Mapped, also in charts that are stretched where angles are good; else directly in space, or in charts that are far
+  /// from lengths in space where that gives better angles. Along long borders those charts come first.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
@@ -124,8 +171,8 @@ class BrepGridder {
       check_face_grid(face, most_angle, tolerance_of(face), grid);
       return grid.gave_up.empty();
     };
-    const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
-    if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
+    const auto map = [&](Charts charts) { grid_mapped(face, wanted_, options_, charts, grid, context_); };
+    if (options_.method != BrepOptions::Method::direct && fill([&] { map(Charts::near); })) return;
     if (options_.method == BrepOptions::Method::mapped) return;
     const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
     const auto grid_in_space = [&] {
@@ -134,11 +181,16 @@ class BrepGridder {
       return is_done;
     };
     const bool is_free = options_.method == BrepOptions::Method::choose;
-    if (is_free && border.points.size() > kMostForDirect && fill([&] { map(true); })) return;
+    // where the direct way would take seconds, any chart; where a chart is stretched but good, no support is made
+    const bool is_long = border.points.size() > kMostForDirect;
+    if (is_free && fill([&] { map(is_long ? Charts::any : Charts::stretched); }) &&
+        (is_long || smallest_angle_of(grid) > kGoodAngleDeg))
+      return;
     if (grid_in_space() && smallest_angle_of(grid) > kFairAngleDeg) return;
     if (!is_free) return;
     const FaceGrid direct = grid;
-    if (!fill([&] { map(true); }) || (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
+    if (!fill([&] { map(Charts::any); }) ||
+        (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
       grid = direct;
   }
 
@@ -167,6 +219,7 @@ class BrepGridder {
     const BrepFace& face = brep_.faces[f];
     why_ = face.name.empty() ? fmt::format("face {}: {}", f.value, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
+    has_failed_[f.index()] = true;
     lower_at(at);
     const auto& points = grids_[f].points;
     if (++failures_[f.index()] % kAllOver == 0)
@@ -255,6 +308,8 @@ class BrepGridder {
   Array<EdgeId, EdgePoints> edges_;
   Array<FaceId, FaceGrid> grids_;
   std::vector<int> failures_;
+  std::vector<bool> has_failed_;            ///< by face: in the last round
+  std::vector<std::vector<double>> sizes_;  ///< by face: at its points in the last round; empty: it failed
   std::size_t num_vertices_ = 0;
   bool is_bridged_ = true;  ///< where that is asked for; no longer where bridges made triangles cross
   std::string why_;
@@ -267,7 +322,6 @@ Model grid_brep(const Brep& brep, const SizeField& size, const BrepOptions& opti
                 Context& context) {
   check_floating_point_mode();
   report = {};
-  const StageTimer timer(context, "surface");
   check_brep(brep);
   return BrepGridder(brep, size, options, report, context).run();
 }

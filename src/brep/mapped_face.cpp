@@ -19,12 +19,14 @@
 namespace delfront {
 namespace {
 
-constexpr double kLeastRatio = 1e-16;   ///< between squared lengths along the axes of a chart
-constexpr double kMostSkew = 1 - 1e-9;  ///< cosine between what the axes are in space
-constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
-constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
-constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
-constexpr int kSamples = 17;            ///< each way, to look at a chart
+constexpr double kLeastRatio = 1e-16;                   ///< between squared lengths along the axes of a chart
+constexpr double kMostSkew = 1 - 1e-9;                  ///< cosine between what the axes are in space
+constexpr double kMostStretch = 25;                     ///< of lengths over directions, in a chart that is used
+constexpr double kMoreStretch = 100, kMoreChange = 30;  ///< the same where stretched charts will do
+constexpr double kMostChange = 3;  ///< of lengths in space over one wanted side, in a chart that is used
+constexpr double kTryPolar = 2.5;  ///< stretch of a linear chart from where a polar one is tried
+constexpr double kEven = 1.02;     ///< of stretch, and of lengths anywhere over those elsewhere
+constexpr int kSamples = 17;       ///< each way, to look at a chart
 constexpr std::size_t kMostOfLoop = 200;
 constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
 constexpr int kPoleDirections = 8;
@@ -132,17 +134,28 @@ std::vector<Point2> places_to_look_at(const FaceGrid& grid, const FacePart& part
 ChartLook look_at(const Chart& chart, std::span<const Point2> places, const ParameterBox& box, const WantedSize& size) {
   ChartLook look;
   const auto scale = [](const Chart::Place& p) { return std::sqrt(length(cross(p.x, p.y))); };
+  std::vector<Chart::Place> found;
+  std::vector<Point> at;
+  double least = 1e300, most = 0;
   for (const Point2 uv : places) {
-    const Point2 xy = chart.to_chart(uv);
-    const Chart::Place place = chart.place(xy);
-    const double stretch = Chart::stretch(place);
-    if (stretch > look.stretch) {
-      look.stretch = stretch;
-      look.at = place.at;
-    }
+    found.push_back(chart.place(chart.to_chart(uv)));
+    at.push_back(found.back().at);
+    least = std::min(least, scale(found.back()));
+    most = std::max(most, scale(found.back()));
+    const double stretch = Chart::stretch(found.back());
+    if (!(stretch > look.stretch)) continue;
+    look.stretch = stretch;
+    look.at = found.back().at;
+  }
+  if (look.stretch < kEven && most < kEven * least) return look;  // a plane, a cylinder: nothing changes
+  std::vector<double> asked(at.size());
+  size.asked().sizes(at, asked);  // together: neighbours in the list are near in space
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Chart::Place& place = found[i];
+    const Point2 xy = chart.to_chart(places[i]);
     // one wanted side on, but no farther than the part goes
     const double bend = largest_curvature(chart.surface().derivatives(place.uv));
-    const double here = scale(place), h = size.lowered(size.asked().size(place.at), bend, place.at);
+    const double here = scale(place), h = size.lowered(asked[i], bend, place.at);
     for (int k = 0; k < 4; ++k) {
       const double ahead = (k % 2 ? -1 : 1) * h / std::max(length(k < 2 ? place.x : place.y), 1e-300);
       const Point2 to = chart.to_uv(k < 2 ? Point2{xy.x + ahead, xy.y} : Point2{xy.x, xy.y + ahead});
@@ -159,7 +172,7 @@ ChartLook look_at(const Chart& chart, std::span<const Point2> places, const Para
 
 /// Linear, or polar round the part's pole, or round one that it has no part in where that is better.
 std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
-                                  const WantedSize& size, bool takes_any, FaceGrid& grid) {
+                                  const WantedSize& size, Charts charts, FaceGrid& grid) {
   std::optional<Chart> best;
   best.emplace(surface, box, part.pole);
   const std::vector<Point2> places = places_to_look_at(grid, part, box);
@@ -179,11 +192,11 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
       best.emplace(surface, box, pole);
     }
   }
-  if (takes_any) return best;
-  if (look.stretch > kMostStretch)
+  if (charts == Charts::any) return best;
+  if (look.stretch > (charts == Charts::near ? kMostStretch : kMoreStretch))
     grid.fail(fmt::format("the mapping stretches lengths by {:.3g} in one direction over another", look.stretch),
               look.at);
-  else if (look.change > kMostChange)
+  else if (look.change > (charts == Charts::near ? kMostChange : kMoreChange))
     grid.fail(fmt::format("lengths in the mapping change by {:.3g} over one side", look.change), look.at);
   if (!grid.gave_up.empty()) return std::nullopt;
   return best;
@@ -296,12 +309,12 @@ class ChartedPart {
 
 }  // namespace
 
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, bool takes_any,
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, Charts charts,
                  FaceGrid& grid, Context& context) {
   try {
     for (const FacePart& part : find_parts(face, size, grid)) {
       const ParameterBox box = box_of(grid, part);
-      const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, takes_any, grid);
+      const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, charts, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
       charted.fill(size, size.is_lowered_on(*face.surface, box), options, context);

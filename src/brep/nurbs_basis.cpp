@@ -41,6 +41,14 @@ KnotLine::KnotLine(int degree, std::vector<double> knots)
     before_[i] = last;
     if (knots_[i] < knots_[i + 1]) last = std::uint32_t(i);
   }
+  const std::size_t terms = std::size_t(degree_) * (std::size_t(degree_) + 1) / 2;  // a span
+  over_.assign((last_span_ + 1) * terms, 0.0);
+  for (std::size_t span = first_span_; span <= last_span_; ++span) {
+    if (!(knots_[span] < knots_[span + 1])) continue;
+    double* over = over_.data() + span * terms;
+    for (std::size_t j = 1; j <= std::size_t(degree_); ++j)
+      for (std::size_t r = 0; r < j; ++r) *over++ = 1 / (knots_[span + r + 1] - knots_[span + r + 1 - j]);
+  }
   std::size_t i = first_span_;
   for (std::size_t bucket = 0; bucket < buckets; ++bucket) {
     const double t = low() + double(bucket) / buckets_over_;

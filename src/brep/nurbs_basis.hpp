@@ -56,7 +56,8 @@ class KnotLine {
     const int p = kDegree > 0 ? kDegree : degree_;
     constexpr std::size_t kRoom = kDegree > 0 ? std::size_t(kDegree) + 1 : std::size_t(kMostDegree) + 1;
     const double* const u = knots_.data() + span;
-    double left[kRoom], right[kRoom], top[kRoom], over[kRoom], below[kRoom];
+    double left[kRoom], right[kRoom], top[kRoom], below[kRoom];
+    const double* over = over_.data() + span * std::size_t(p * (p + 1) / 2);
     if (p < 1) __builtin_unreachable();
     b.value[0] = 1;
     for (int j = 1; j <= p; ++j) {  // A2.2
@@ -64,13 +65,14 @@ class KnotLine {
       right[j] = u[j] - t;
       double saved = 0;
       for (int r = 0; r < j; ++r) {
-        const double inverse = 1 / (right[r + 1] + left[j - r]), ratio = b.value[r] * inverse;
-        if (j == p) top[r] = ratio, over[r] = inverse;
+        const double ratio = b.value[r] * over[r];
+        if (j == p) top[r] = ratio;
         if (j == p - 1) below[r] = ratio;
         b.value[r] = saved + right[r + 1] * ratio;
         saved = left[j - r] * ratio;
       }
       b.value[j] = saved;
+      if (j < p) over += j;
     }
     if (orders < 1) return;
     differences(top, p, p, b.first);
@@ -99,6 +101,7 @@ class KnotLine {
   double buckets_over_;
   std::vector<std::uint32_t> first_;   ///< by bucket of t: the span of its beginning
   std::vector<std::uint32_t> before_;  ///< the span with a length before a span
+  std::vector<double> over_;  ///< by span, degree j = 1 …, r < j: 1 / (knots[span + r + 1] - knots[span + r + 1 - j])
 };
 
 /// @brief Control points of data with their weights.

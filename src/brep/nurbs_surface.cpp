@@ -14,6 +14,9 @@ constexpr double kSettled =
     1e-12;  ///< of the squared distance: a step of Newton's method that gains no more is the last
 constexpr int kMostSteps = 40, kMostHalvings = 10;
 
+/// A number for two degrees.
+constexpr int pair_of(int u, int v) { return (kMostDegree + 1) * u + v; }
+
 class NurbsSurface final : public SmoothSurface {
  public:
   explicit NurbsSurface(const NurbsSurfaceData& data)
@@ -46,14 +49,52 @@ class NurbsSurface final : public SmoothSurface {
   DegenerateSides degenerate_sides() const override { return sides_; }
 
   SurfaceDerivatives derivatives(Point2 uv) const override {
-    if (u_.degree() == 3 && v_.degree() == 3) return second_order<3, 3>(uv);
-    if (u_.degree() == 2 && v_.degree() == 2) return second_order<2, 2>(uv);
-    return second_order<0, 0>(uv);
+    switch (pair_of(u_.degree(), v_.degree())) {  // the usual ones
+      case pair_of(3, 3):
+        return second_order<3, 3>(uv);
+      case pair_of(3, 1):
+        return second_order<3, 1>(uv);
+      case pair_of(1, 3):
+        return second_order<1, 3>(uv);
+      case pair_of(2, 2):
+        return second_order<2, 2>(uv);
+      case pair_of(2, 1):
+        return second_order<2, 1>(uv);
+      case pair_of(1, 2):
+        return second_order<1, 2>(uv);
+      case pair_of(1, 1):
+        return second_order<1, 1>(uv);
+      case pair_of(2, 3):
+        return second_order<2, 3>(uv);
+      case pair_of(3, 2):
+        return second_order<3, 2>(uv);
+      default:
+        return second_order<0, 0>(uv);
+    }
   }
   SurfaceTangents tangents(Point2 uv) const override {
-    if (u_.degree() == 3 && v_.degree() == 3) return first_order<3, 3>(uv);
-    if (u_.degree() == 2 && v_.degree() == 2) return first_order<2, 2>(uv);
-    return first_order<0, 0>(uv);
+    switch (pair_of(u_.degree(), v_.degree())) {  // the usual ones
+      case pair_of(3, 3):
+        return first_order<3, 3>(uv);
+      case pair_of(3, 1):
+        return first_order<3, 1>(uv);
+      case pair_of(1, 3):
+        return first_order<1, 3>(uv);
+      case pair_of(2, 2):
+        return first_order<2, 2>(uv);
+      case pair_of(2, 1):
+        return first_order<2, 1>(uv);
+      case pair_of(1, 2):
+        return first_order<1, 2>(uv);
+      case pair_of(1, 1):
+        return first_order<1, 1>(uv);
+      case pair_of(2, 3):
+        return first_order<2, 3>(uv);
+      case pair_of(3, 2):
+        return first_order<3, 2>(uv);
+      default:
+        return first_order<0, 0>(uv);
+    }
   }
 
   Point2 closest(Point p, Point2 start) const override;

@@ -14,6 +14,7 @@ constexpr double kGrowth = 1.3;      ///< of sizes from where they are lowered
 constexpr double kHelps = 0.95;      ///< of the places beyond the goals: a round that leaves more helps no more
 constexpr double kFaceShare = 0.88;  ///< of sizes, all over a face that misses a goal for the second time
 constexpr int kRoundsWithout = 2;    ///< help, before it ends
+constexpr int kRoundsOfBetter = 2;   ///< within a grid that is to be better than one there is
 
 std::size_t num_beyond(const BrepAccuracy& a) {
   return a.deviation.num_beyond + a.turn_deg.num_beyond + a.angle_deg.num_beyond;
@@ -53,6 +54,7 @@ Model grid_brep_to_goals(const Brep& brep, std::shared_ptr<const SizeField> size
   int without_help = 0;
   for (int round = 1; round <= std::max(1, goals.rounds); ++round) {
     context.progress("surface", std::uint64_t(round - 1), std::uint64_t(std::max(1, goals.rounds)), "rounds");
+    if (round > 1) how.most_rounds = std::min(options.most_rounds, kRoundsOfBetter);
     BrepGridReport made;
     Model grid;
     try {
@@ -62,6 +64,7 @@ Model grid_brep_to_goals(const Brep& brep, std::shared_ptr<const SizeField> size
       report.stopped = fmt::format("round {} has no grid: {}", round, e.what());
       return best;
     }
+    const StageTimer timer(context, "measure");
     report.rounds.push_back(measure_brep_grid(brep, grid, made, *wanted, goals, &lowered, context));
     best = std::move(grid);
     report.grid = std::move(made);

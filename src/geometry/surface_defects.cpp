@@ -5,9 +5,10 @@
 
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "geometry/surface_findings.hpp"
 #include "predicates/predicates.hpp"
-#include "spatial/bvh.hpp"
+#include "spatial/box_pairs.hpp"
 
 namespace delfront {
 namespace {
@@ -15,6 +16,37 @@ namespace {
 struct Pair {
   std::uint32_t first, second;
   Point where;
+};
+
+constexpr std::size_t kGroupsOfPart = 256, kPartsAtOnce = 64;
+
+/// What was found in a part of the surface.
+struct FoundPairs {
+  std::vector<Pair> crossing, overlapping, touching;
+
+  void look_at(const Surface& surface, std::uint32_t i, std::uint32_t j) {
+    Point p[3], q[3], where;
+    unsigned p_id[3], q_id[3];
+    for (int k = 0; k < 3; ++k) {
+      p[k] = surface.corner(i, k);
+      q[k] = surface.corner(j, k);
+      p_id[k] = surface.corners(i)[std::size_t(k)].value;
+      q_id[k] = surface.corners(j)[std::size_t(k)].value;
+    }
+    switch (classify_triangles(p, p_id, q, q_id, &where)) {
+      case Crossing::none:
+        return;
+      case Crossing::crosses:
+        crossing.push_back({i, j, where});
+        return;
+      case Crossing::overlaps:
+        overlapping.push_back({i, j, where});
+        return;
+      case Crossing::touches:
+        touching.push_back({i, j, where});
+        return;
+    }
+  }
 };
 
 void append_pairs(const Surface& surface, std::vector<Pair>& pairs, const char* kind, const char* what,
@@ -94,32 +126,23 @@ void find_intersections(const Surface& surface, std::vector<Finding>& findings, 
   std::vector<Box> boxes(surface.num_triangles());
   for (std::size_t t = 0; t < boxes.size(); ++t)
     if (surface.is_sound(t)) boxes[t] = surface.box(t);
+  const BoxPairs pairs(boxes, context.threads);
+  const std::size_t num_parts = (pairs.num_groups() + kGroupsOfPart - 1) / kGroupsOfPart;
+  std::vector<FoundPairs> found(num_parts);
+  for (std::size_t begin = 0; begin < num_parts; begin += kPartsAtOnce) {
+    context.progress("check", begin, num_parts, "parts of the surface");
+    parallel_for(context.threads, std::min(kPartsAtOnce, num_parts - begin), [&](std::size_t part) {
+      const std::size_t first = (begin + part) * kGroupsOfPart;
+      for (std::size_t g = first; g < std::min(first + kGroupsOfPart, pairs.num_groups()); ++g)
+        pairs.for_each_pair(g, [&](std::uint32_t i, std::uint32_t j) { found[begin + part].look_at(surface, i, j); });
+    });
+  }
   std::vector<Pair> crossing, overlapping, touching;
-  std::uint64_t num_pairs = 0;
-  Bvh(boxes).for_each_pair([&](std::uint32_t i, std::uint32_t j) {
-    if (++num_pairs % 65536 == 0) context.progress("check", num_pairs, 0, "pairs of facets");
-    Point p[3], q[3], where;
-    unsigned p_id[3], q_id[3];
-    for (int k = 0; k < 3; ++k) {
-      p[k] = surface.corner(i, k);
-      q[k] = surface.corner(j, k);
-      p_id[k] = surface.corners(i)[std::size_t(k)].value;
-      q_id[k] = surface.corners(j)[std::size_t(k)].value;
-    }
-    switch (classify_triangles(p, p_id, q, q_id, &where)) {
-      case Crossing::none:
-        return;
-      case Crossing::crosses:
-        crossing.push_back({i, j, where});
-        return;
-      case Crossing::overlaps:
-        overlapping.push_back({i, j, where});
-        return;
-      case Crossing::touches:
-        touching.push_back({i, j, where});
-        return;
-    }
-  });
+  for (const FoundPairs& part : found) {
+    crossing.insert(crossing.end(), part.crossing.begin(), part.crossing.end());
+    overlapping.insert(overlapping.end(), part.overlapping.begin(), part.overlapping.end());
+    touching.insert(touching.end(), part.touching.begin(), part.touching.end());
+  }
   append_pairs(surface, crossing, "self_intersection", crossing.size() == 1 ? "crosses" : "cross",
                "cut the parts at each other (a boolean union) in the CAD tool", findings);
   append_pairs(surface, overlapping, "overlapping_triangles",

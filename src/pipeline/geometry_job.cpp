@@ -103,6 +103,7 @@ void tell(const CadReport& cad, const std::string& path, Context& context) {
 
 std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook& look, const Options& options,
                                                 std::shared_ptr<const SizeField> asked, Context& context) {
+  const StageTimer timer(context, "sizes");
   const bool has_field = asked && has_field_everywhere(options.size);
   const BrepSizes wish = geometry_wish(options, look.extent, has_field);
   GeometrySources found = find_brep_sizes(brep, look, wish, context);

@@ -71,30 +71,34 @@ void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& cont
 /// Smooth geometry has a grid to look at until sizes are known.
 void read_smooth(Run& run, const std::string& path) {
   CadReport cad;
-  GeometryInput smooth{run.inputs.size(), read_brep(path, run.context, cad), {}};
+  GeometryInput smooth{run.inputs.size(), {}, {}};
+  {
+    const StageTimer timer(run.context, "read");
+    smooth.brep = read_brep(path, run.context, cad);
+  }
   Options& options = run.options;  // several files might differ in their units
   if (options.input.units == "auto" && options.input.files.size() == 1 && metres_per_unit(cad.unit) > 0)
     options.input.units = cad.unit;
+  const StageTimer timer(run.context, "look");
   smooth.look = look_at_brep(smooth.brep, run.context);
   run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
   run.smooth.push_back(std::move(smooth));
 }
 
 void read_inputs(Run& run) {
-  const StageTimer timer(run.context, "read");
   const std::vector<std::string>& files = run.options.input.files;
   for (std::size_t i = 0; i < files.size(); ++i) {
     run.context.progress("read", i, files.size(), "files");
-    if (is_smooth_file(files[i]))
-      read_smooth(run, files[i]);
-    else
-      run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
+    if (is_smooth_file(files[i])) read_smooth(run, files[i]);
+    const StageTimer timer(run.context, "read");
+    if (!is_smooth_file(files[i])) run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
     InputFile file{files[i], 0, "", run.inputs.back().mesh.points.size(), 0};
     for (const CellBlock& block : run.inputs.back().mesh.blocks) file.num_cells += block.size();
     hash_file(file);
     say_what_is_unused(run.inputs.back().mesh, files[i], run.context);
     run.result.inputs.push_back(std::move(file));
   }
+  const StageTimer timer(run.context, "read");
   std::vector<NamedMesh> curves = curves_of_job(coarse_options(run.options), run.inputs, run.context);
   std::move(curves.begin(), curves.end(), std::back_inserter(run.inputs));
   run.context.progress("read", files.size(), files.size(), "files");

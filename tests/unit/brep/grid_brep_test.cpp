@@ -104,6 +104,60 @@ TEST(GridBrep, AMappingThatIsTooBadIsGriddedDirectly) {
   EXPECT_GE(share_of_right_lengths(made.model, size), 0.9);
 }
 
+/// Both in one; the second's ids follow the first's.
+Brep joined(Brep a, const Brep& b) {
+  const std::size_t corners = a.corners.size(), edges = a.edges.size();
+  for (const BrepCorner& corner : b.corners) a.corners.push_back(corner);
+  for (BrepEdge edge : b.edges) {
+    for (CornerId& c : edge.corners)
+      if (c.is_valid()) c = CornerId(corners + c.index());
+    a.edges.push_back(edge);
+  }
+  for (BrepFace face : b.faces) {
+    for (auto& loop : face.loops)
+      for (BrepUse& use : loop) use.edge = EdgeId(edges + use.edge.index());
+    a.faces.push_back(face);
+  }
+  return a;
+}
+
+TEST(GridBrep, AFaceFarFromOneThatFailsKeepsItsGridWhileThatIsDoneAgain) {
+  // triangles of the ball differ by more from its normals than is allowed, until sizes are lowered there
+  const Brep ball = make_rectangle_on(make_sphere_surface({}, 1), {{0, -0.5}, {1.5, 0.5}});
+  SpaceFrame far;
+  far.origin = {50, 0, 0};
+  const Brep square = make_rectangle_on(make_plane_surface(far), {{0, 0}, {2, 2}});
+  const LinearSize size(0.35, 1, {}, 0, 1);
+  const BrepOptions options = {.method = BrepOptions::Method::mapped, .normal_angle_deg = 9};
+  const Gridded alone = grid(square, size, options), both = grid(joined(ball, square), size, options);
+  EXPECT_GT(both.report.rounds, 1u);
+  EXPECT_LE(both.report.largest_normal_angle_deg, 9);
+  // the same places, though points of edges have other numbers in each round
+  const auto on_square = [](const Gridded& made, std::uint32_t face) {
+    std::multiset<std::array<double, 9>> triangles;
+    for (std::size_t t = 0; t < made.model.triangles.size(); ++t) {
+      if (made.model.input_face[TriangleId(t)] != face) continue;
+      std::array<std::array<double, 3>, 3> at;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Point p = made.model.points[made.model.triangles[TriangleId(t)][k]];
+        at[k] = {p.x, p.y, p.z};
+      }
+      std::sort(at.begin(), at.end());
+      triangles.insert({at[0][0], at[0][1], at[0][2], at[1][0], at[1][1], at[1][2], at[2][0], at[2][1], at[2][2]});
+    }
+    return triangles;
+  };
+  EXPECT_EQ(on_square(both, 1), on_square(alone, 0));
+  EXPECT_LT(farthest_from_entity(both, joined(ball, square)), 1e-12);
+}
+
+TEST(GridBrep, NoMoreRoundsThanAskedFor) {
+  const Brep ball = make_rectangle_on(make_sphere_surface({}, 1), {{0, -0.5}, {1.5, 0.5}});
+  const LinearSize size(0.35, 1, {}, 0, 1);
+  EXPECT_THROW(grid(ball, size, {.method = BrepOptions::Method::mapped, .normal_angle_deg = 9, .most_rounds = 1}),
+               MeshingError);
+}
+
 TEST(GridBrep, TurnedAndScaledCopiesHaveTheSameCounts) {
   SpaceFrame turned;  // about (1, 2, 3), by 40 degrees
   const Point axis = Point{1, 2, 3} / std::sqrt(14.0);
