@@ -13,6 +13,7 @@
 #include <ShapeExtend_DataMapIteratorOfDataMapOfShapeListOfMsg.hxx>
 #include <ShapeExtend_MsgRegistrator.hxx>
 #include <ShapeFix_Shape.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
@@ -186,13 +187,34 @@ void sew(Part& part, const CadOptions& options, const Say& say) {
   });
 }
 
+/// What OpenCASCADE gives up at stays as it was, and that is said; the next step may do without.
+void attempt(Part& part, const char* what, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Standard_Failure& e) {
+    part.report.suspicious.push_back(
+        {"not_mended",
+         fmt::format("mending {} failed in OpenCASCADE ({} {})", what, e.DynamicType()->Name(), e.GetMessageString()),
+         {}});
+  }
+}
+
 }  // namespace
 
 void heal(Part& part, const CadOptions& options, const Say& say) {
-  BRepLib::BuildCurves3d(part.shape);
-  if (options.heals) fix(part, say);
-  if (options.sews) sew(part, options, say);
-  BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30));
+  attempt(part, "curves in space", [&] { BRepLib::BuildCurves3d(part.shape); });
+  if (options.heals) {
+    attempt(part, "tiny edges", [&] { remove_tiny_edges(part); });
+    attempt(part, "parameter curves", [&] { drop_wrong_parameter_curves(part); });
+    attempt(part, "what is not valid", [&] { fix(part, say); });
+  }
+  if (options.sews) attempt(part, "free edges", [&] { sew(part, options, say); });
+  if (options.heals) {
+    attempt(part, "double faces", [&] { drop_double_faces(part); });
+    attempt(part, "solids inside out", [&] { turn_inverted_solids(part); });
+  }
+  attempt(part, "parameters along edges",
+          [&] { BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30)); });
 }
 
 }  // namespace delfront::cad

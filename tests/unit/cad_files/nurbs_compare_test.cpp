@@ -161,35 +161,44 @@ std::vector<double> places(Random& random, const TColStd_Array1OfReal& knots, in
   return result;
 }
 
-/// The largest difference of each order, and what it is a share of.
+/// The largest difference, as a share of what it is measured by.
 struct Difference {
-  double most = 0, size = 0;
-  void add(const Point& ours, const gp_XYZ& theirs) {
-    const Point other = point_of(theirs);
-    most = std::max(most, distance(ours, other));
-    size = std::max(size, length(other));
+  double most = 0;
+  void add(const Point& ours, const gp_XYZ& theirs, double size) {
+    most = std::max(most, distance(ours, point_of(theirs)) / size);
   }
 };
 
-/// @param turns  periods that the parameter is moved by
+/// Derivatives are sums of differences of points, each over a span: what rounding there is, is a share of the size by
+/// the degree over the shortest span near t, to the order.
+double steepness(const std::vector<double>& knots, int degree, double t) {
+  double shortest = knots.back() - knots.front();
+  const auto after = std::size_t(std::upper_bound(knots.begin(), knots.end(), t) - knots.begin());
+  const std::size_t reach = std::size_t(degree);
+  for (std::size_t i = after > reach ? after - reach : 0; i + 1 < std::min(knots.size(), after + reach); ++i)
+    if (knots[i + 1] > knots[i]) shortest = std::min(shortest, knots[i + 1] - knots[i]);
+  return degree / shortest;
+}
+
 void expect_same(const Handle(Geom_BSplineCurve) & theirs, Random& random, const std::string& what) {
   const NurbsCurveData data = data_of(theirs);
   const CurvePointer ours = make_nurbs_curve(data);
   Difference at, first, second;
-  at.size = extent_of(data.points);
+  const double size = extent_of(data.points);
   for (const double t : places(random, theirs->Knots(), 3)) {
+    const double steep = steepness(data.knots, data.degree, t);
     gp_Pnt p;
     gp_Vec d1, d2;
     theirs->D2(t, p, d1, d2);
     const CurveDerivatives mine = ours->derivatives(t);
-    at.add(mine.at, p.XYZ());
-    first.add(mine.first, d1.XYZ());
-    second.add(mine.second, d2.XYZ());
+    at.add(mine.at, p.XYZ(), size);
+    first.add(mine.first, d1.XYZ(), size * steep);
+    second.add(mine.second, d2.XYZ(), size * steep * steep);
   }
-  for (const double t : numbers(theirs->Knots())) at.add(ours->at(t), theirs->Value(t).XYZ());
-  EXPECT_LE(at.most, kClose * at.size) << what;
-  EXPECT_LE(first.most, kClose * first.size) << what;
-  EXPECT_LE(second.most, kClose * std::max(second.size, first.size)) << what;
+  for (const double t : numbers(theirs->Knots())) at.add(ours->at(t), theirs->Value(t).XYZ(), size);
+  EXPECT_LE(at.most, kClose) << what;
+  EXPECT_LE(first.most, kClose) << what;
+  EXPECT_LE(second.most, kClose) << what;
 }
 
 void expect_same(const Handle(Geom_BSplineSurface) & theirs, Random& random, const std::string& what, int each = 1) {
@@ -199,29 +208,30 @@ void expect_same(const Handle(Geom_BSplineSurface) & theirs, Random& random, con
   theirs->UKnots(u);
   theirs->VKnots(v);
   Difference at, first, second;
-  at.size = extent_of(data.points);
+  const double size = extent_of(data.points);
   for (const double s : places(random, u, each))
     for (const double t : places(random, v, each)) {
       gp_Pnt p;
       gp_Vec du, dv, duu, dvv, duv;
       theirs->D2(s, t, p, du, dv, duu, dvv, duv);
       const SurfaceDerivatives mine = ours->derivatives({s, t});
-      at.add(mine.at, p.XYZ());
-      first.add(mine.u, du.XYZ());
-      first.add(mine.v, dv.XYZ());
-      second.add(mine.uu, duu.XYZ());
-      second.add(mine.uv, duv.XYZ());
-      second.add(mine.vv, dvv.XYZ());
+      const double a = steepness(data.knots[0], data.degree[0], s), b = steepness(data.knots[1], data.degree[1], t);
+      at.add(mine.at, p.XYZ(), size);
+      first.add(mine.u, du.XYZ(), size * a);
+      first.add(mine.v, dv.XYZ(), size * b);
+      second.add(mine.uu, duu.XYZ(), size * a * a);
+      second.add(mine.uv, duv.XYZ(), size * a * b);
+      second.add(mine.vv, dvv.XYZ(), size * b * b);
       const SurfaceTangents also = ours->tangents({s, t});
-      at.add(also.at, p.XYZ());
-      first.add(also.u, du.XYZ());
-      first.add(also.v, dv.XYZ());
+      at.add(also.at, p.XYZ(), size);
+      first.add(also.u, du.XYZ(), size * a);
+      first.add(also.v, dv.XYZ(), size * b);
     }
   for (const double s : numbers(u))
-    for (const double t : numbers(v)) at.add(ours->at({s, t}), theirs->Value(s, t).XYZ());
-  EXPECT_LE(at.most, kClose * at.size) << what;
-  EXPECT_LE(first.most, kClose * first.size) << what;
-  EXPECT_LE(second.most, kClose * std::max(second.size, first.size)) << what;
+    for (const double t : numbers(v)) at.add(ours->at({s, t}), theirs->Value(s, t).XYZ(), size);
+  EXPECT_LE(at.most, kClose) << what;
+  EXPECT_LE(first.most, kClose) << what;
+  EXPECT_LE(second.most, kClose) << what;
 }
 
 std::string words(unsigned seed, const Kind& u) {
