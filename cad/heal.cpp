@@ -202,17 +202,17 @@ void attempt(Part& part, const char* what, const std::function<void()>& work) {
 }  // namespace
 
 void heal(Part& part, const CadOptions& options, const Say& say) {
+  check_corners(part);
+  note_loose_edges(part);
   attempt(part, "curves in space", [&] { BRepLib::BuildCurves3d(part.shape); });
   if (options.heals) {
     attempt(part, "tiny edges", [&] { remove_tiny_edges(part); });
     attempt(part, "parameter curves", [&] { drop_wrong_parameter_curves(part); });
     attempt(part, "what is not valid", [&] { fix(part, say); });
   }
+  if (options.heals) attempt(part, "double faces", [&] { drop_double_faces(part); });
   if (options.sews) attempt(part, "free edges", [&] { sew(part, options, say); });
-  if (options.heals) {
-    attempt(part, "double faces", [&] { drop_double_faces(part); });
-    attempt(part, "solids inside out", [&] { turn_inverted_solids(part); });
-  }
+  if (options.heals) attempt(part, "solids inside out", [&] { turn_inverted_solids(part); });
   attempt(part, "parameters along edges",
           [&] { BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30)); });
 }

@@ -60,6 +60,10 @@ Part read_file(const std::string& path, const Say& say);
 /// @brief Mends what is not valid, sews loose faces, closes shells to solids. Notes all it does.
 void heal(Part& part, const CadOptions& options, const Say& say);
 
+/// @throws Failure  an edge ends far from its corner, not by tolerance
+void check_corners(const Part& part);
+void note_loose_edges(Part& part);
+
 // Parts of mending. Each notes what it does.
 /// @brief Edges within the tolerance of their own ends become one corner.
 void remove_tiny_edges(Part& part);

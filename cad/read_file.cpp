@@ -284,6 +284,14 @@ void note_translation(const Handle(XSControl_WorkSession) & session, Part& part)
     part.report.suspicious.push_back(
         {kind, fmt::format("{} ({}): {}", label.IsNull() ? "?" : label->ToCString(), short_type(entity), what), at});
   };
+  TopTools_IndexedMapOfShape kept;  // without places, which instances of a product have
+  for (TopExp_Explorer face(part.shape, TopAbs_FACE); face.More(); face.Next())
+    kept.Add(face.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD));
+  const auto is_kept = [&](const TopoDS_Shape& shape) {
+    for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+      if (kept.Contains(face.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD))) return true;
+    return false;
+  };
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const Handle(Standard_Transient) entity = model->Value(i);
     const Handle(Transfer_Binder) binder = process->Find(entity);
@@ -295,7 +303,10 @@ void note_translation(const Handle(XSControl_WorkSession) & session, Part& part)
     if (!binder.IsNull())
       for (int k = 1; k <= binder->Check()->NbFails(); ++k)
         note("not_translated", entity, binder->Check()->CFail(k), at);
-    if (shape.IsNull() && is_face(entity->DynamicType()->Name()))
+    if (!binder.IsNull())
+      for (int k = 1; k <= binder->Check()->NbWarnings(); ++k)
+        note("reader_says", entity, binder->Check()->CWarning(k), at);
+    if ((shape.IsNull() || !is_kept(shape)) && is_face(entity->DynamicType()->Name()))
       note("lost_face", entity, "this face of the file could not be read and is missing", at);
   }
 }

@@ -34,6 +34,11 @@ namespace {
 
 constexpr double kTinyEdge = 1e-7;   ///< of the diagonal: edges that may be within their corners' tolerance
 constexpr double kRounding = 1e-12;  ///< of the diagonal
+constexpr double kBeside =
+    10;  ///< of a corner's tolerance: an edge that ends farther off has another corner, unless it is
+constexpr double kBesideShare = 1e-3;  ///< within this of the diagonal
+constexpr double kMostBeside = 0.05;   ///< of the diagonal, whatever the tolerance
+constexpr double kInfiniteParameter = 1e100;
 constexpr double kOffEdge = 1e-3;    ///< of an edge's length: parameter curves that are wrong rather than loose
 constexpr double kSamePlace = 1e-7;  ///< of the diagonal: places of faces that are there twice
 constexpr int kSamples = 16;         ///< along an edge
@@ -244,6 +249,40 @@ TopoDS_Shell shell_of(const std::vector<TopoDS_Face>& faces) {
 
 }  // namespace
 
+void check_corners(const Part& part) {
+  TopTools_IndexedMapOfShape edges;
+  TopExp::MapShapes(part.shape, TopAbs_EDGE, edges);
+  for (int i = 1; i <= edges.Extent(); ++i) {
+    const TopoDS_Edge edge = TopoDS::Edge(edges(i).Oriented(TopAbs_FORWARD));
+    double range[2] = {0, 0};
+    const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, range[0], range[1]);
+    if (curve.IsNull() || !(range[1] > range[0])) continue;
+    const TopoDS_Vertex ends[2] = {TopExp::FirstVertex(edge), TopExp::LastVertex(edge)};
+    for (int k = 0; k < 2; ++k) {
+      if (ends[k].IsNull() || std::abs(range[k]) >= kInfiniteParameter) continue;
+      const gp_Pnt corner = BRep_Tool::Pnt(ends[k]);
+      const double away = curve->Value(range[k]).Distance(corner);
+      const double allowed = std::max(kBeside * BRep_Tool::Tolerance(ends[k]), kBesideShare * part.diagonal);
+      if (away <= std::min(allowed, kMostBeside * part.diagonal)) continue;
+      throw Failure(
+          fmt::format("edge {} ends {:.3g} from its corner at {}: the file contradicts itself; export it again, "
+                      "or mend the part there",
+                      i, away, place(point_of(corner))));
+    }
+  }
+}
+
+void note_loose_edges(Part& part) {
+  TopTools_IndexedMapOfShape loose;
+  for (TopExp_Explorer e(part.shape, TopAbs_EDGE, TopAbs_FACE); e.More(); e.Next()) loose.Add(e.Current());
+  if (loose.IsEmpty()) return;
+  const TopoDS_Vertex vertex = TopExp::FirstVertex(TopoDS::Edge(loose(1)));
+  const Point at = vertex.IsNull() ? Point{} : point_of(BRep_Tool::Pnt(vertex));
+  part.report.suspicious.push_back(
+      {"loose_edges",
+       fmt::format("edges that belong to no face are left out: {}, one of them at {}", loose.Extent(), place(at)), at});
+}
+
 void remove_tiny_edges(Part& part) {
   for (int round = 0; round < kMostRounds; ++round)
     if (remove_round(part) == 0) return;
@@ -298,7 +337,10 @@ void turn_inverted_solids(Part& part) {
     BRepClass3d_SolidClassifier where(solids(s));
     where.PerformInfinitePoint(1e-7 * part.diagonal);
     if (where.State() != TopAbs_IN) continue;
-    context->Replace(solids(s), solids(s).Reversed());
+    TopoDS_Solid turned;
+    BRep_Builder().MakeSolid(turned);
+    for (TopoDS_Iterator it(solids(s)); it.More(); it.Next()) BRep_Builder().Add(turned, it.Value().Reversed());
+    context->Replace(solids(s), turned);
     is_turned = true;
     const TopExp_Explorer vertex(solids(s), TopAbs_VERTEX);
     const Point at = point_of(BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current())));

@@ -65,26 +65,12 @@ class Translator {
     }
     for (TopExp_Explorer s(part_.shape, TopAbs_SOLID); s.More(); s.Next()) ++part_.report.solids;
     for (TopExp_Explorer s(part_.shape, TopAbs_SHELL); s.More(); s.Next()) ++part_.report.shells;
-    note_loose_edges();
     part_.report.free_edges = count_free_edges(part_.shape);
     part_.report.largest_tolerance = largest_tolerance(part_.shape);
     result_.report = std::move(part_.report);
   }
 
  private:
-  void note_loose_edges() {
-    TopTools_IndexedMapOfShape loose;
-    for (TopExp_Explorer e(part_.shape, TopAbs_EDGE, TopAbs_FACE); e.More(); e.Next()) loose.Add(e.Current());
-    if (loose.IsEmpty()) return;
-    const TopoDS_Vertex vertex = TopExp::FirstVertex(TopoDS::Edge(loose(1)));
-    const Point at = vertex.IsNull() ? Point{} : point_of(BRep_Tool::Pnt(vertex));
-    part_.report.suspicious.push_back(
-        {"loose_edges",
-         fmt::format("{} edges belong to no face and are left out, one of them at ({:g}, {:g}, {:g})", loose.Extent(),
-                     at.x, at.y, at.z),
-         at});
-  }
-
   int vertex_of(const TopoDS_Vertex& vertex) {
     if (vertex.IsNull()) return -1;
     const int known = vertices_.FindIndex(vertex);
