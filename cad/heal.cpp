@@ -92,9 +92,22 @@ bool has_face_without_wires(const TopoDS_Shape& shape) {
   return false;
 }
 
+/// Instances of a product are checked once.
+bool is_valid(const TopoDS_Shape& shape, const Say& say) {
+  TopTools_IndexedMapOfShape pieces;
+  for (const auto& [what, avoid] :
+       {std::pair{TopAbs_SOLID, TopAbs_SHAPE}, {TopAbs_SHELL, TopAbs_SOLID}, {TopAbs_FACE, TopAbs_SHELL}})
+    for (TopExp_Explorer it(shape, what, avoid); it.More(); it.Next())
+      pieces.Add(it.Current().Located(TopLoc_Location()));
+  for (int i = 1; i <= pieces.Extent(); ++i) {
+    if (i % 64 == 1) say("checking", double(i) / pieces.Extent());
+    if (!BRepCheck_Analyzer(pieces(i)).IsValid()) return false;
+  }
+  return true;
+}
+
 void fix(Part& part, const Say& say) {
-  say("checking", -1);
-  if (BRepCheck_Analyzer(part.shape).IsValid() && !has_face_without_wires(part.shape)) return;
+  if (is_valid(part.shape, say) && !has_face_without_wires(part.shape)) return;
   const Handle(ShapeFix_Shape) fixer = new ShapeFix_Shape(part.shape);
   const Handle(ShapeExtend_MsgRegistrator) messages = new ShapeExtend_MsgRegistrator;
   fixer->SetMsgRegistrator(messages);

@@ -9,6 +9,7 @@
 #include <IGESData_IGESModel.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_InterfaceModel.hxx>
+#include <Interface_ReportEntity.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
@@ -273,6 +274,26 @@ std::string short_type(const Handle(Standard_Transient) & entity) {
   return name.substr(name.find('_') + 1);
 }
 
+/// Geometry with a reference that leads nowhere, or to something else, is what OpenCASCADE crashes at: it is refused.
+void check_references(const Handle(XSControl_WorkSession) & session) {
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Interface_ReportEntity) report = model->ReportEntity(i);
+    if (report.IsNull()) continue;
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const std::string type = entity->DynamicType()->Name();
+    const bool is_geometry = type.rfind("StepGeom_", 0) == 0 || type.rfind("StepShape_", 0) == 0;
+    const Handle(Interface_Check) check = report->Check();
+    for (int k = 1; k <= check->NbFails() && is_geometry; ++k) {
+      const std::string what = check->CFail(k);
+      if (what.find("(name)") != std::string::npos || what.find("String") != std::string::npos) continue;
+      const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+      throw Failure(fmt::format("{} ({}): {}; the file is damaged there: export it again",
+                                label.IsNull() ? "?" : label->ToCString(), short_type(entity), what));
+    }
+  }
+}
+
 /// What the translators failed at, and faces of the file that became none.
 void note_translation(const Handle(XSControl_WorkSession) & session, Part& part) {
   const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
@@ -380,6 +401,7 @@ void read_step(const std::string& path, Part& part, const Say& say) {
   reader.SetColorMode(true);
   reader.SetLayerMode(true);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Failure("the STEP file cannot be parsed");
+  check_references(reader.Reader().WS());
   say("units", -1);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);

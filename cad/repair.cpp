@@ -24,6 +24,8 @@
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "fmt/format.h"
 #include "geometry.hpp"
@@ -44,6 +46,15 @@ constexpr double kSamePlace = 1e-7;  ///< of the diagonal: places of faces that 
 constexpr int kSamples = 16;         ///< along an edge
 constexpr int kNet = 5;              ///< places along each parameter of a face, to find one within it
 constexpr int kMostRounds = 4;       ///< of removing edges: chains of them go one by one
+
+/// Instances of a product are looked at once: what is wrong with one is wrong with all.
+class Seen {
+ public:
+  bool is_new(const TopoDS_Shape& shape) { return seen_.insert(shape.TShape().get()).second; }
+
+ private:
+  std::set<const void*> seen_;
+};
 
 std::string place(Point p) { return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z); }
 
@@ -238,6 +249,13 @@ std::vector<TopoDS_Face> distinct_faces(TopExp_Explorer explorer, Part& part, bo
   return faces;
 }
 
+bool is_inside_out(const TopoDS_Shape& solid, double diagonal) {
+  if (count_free_edges(solid) > 0) return false;
+  BRepClass3d_SolidClassifier where(solid);
+  where.PerformInfinitePoint(1e-7 * diagonal);
+  return where.State() == TopAbs_IN;
+}
+
 /// A shell with each of these faces once.
 TopoDS_Shell shell_of(const std::vector<TopoDS_Face>& faces) {
   BRep_Builder builder;
@@ -252,7 +270,9 @@ TopoDS_Shell shell_of(const std::vector<TopoDS_Face>& faces) {
 void check_corners(const Part& part) {
   TopTools_IndexedMapOfShape edges;
   TopExp::MapShapes(part.shape, TopAbs_EDGE, edges);
+  Seen seen;
   for (int i = 1; i <= edges.Extent(); ++i) {
+    if (!seen.is_new(edges(i))) continue;
     const TopoDS_Edge edge = TopoDS::Edge(edges(i).Oriented(TopAbs_FORWARD));
     double range[2] = {0, 0};
     const Handle(Geom_Curve) curve = BRep_Tool::Curve(edge, range[0], range[1]);
@@ -291,7 +311,9 @@ void remove_tiny_edges(Part& part) {
 void drop_wrong_parameter_curves(Part& part) {
   TopTools_IndexedMapOfShape faces;
   TopExp::MapShapes(part.shape, TopAbs_FACE, faces);
+  Seen seen;
   for (int f = 1; f <= faces.Extent(); ++f) {
+    if (!seen.is_new(faces(f))) continue;
     const TopoDS_Face face = TopoDS::Face(faces(f));
     for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(e.Current());
@@ -316,11 +338,16 @@ void drop_double_faces(Part& part) {
   TopTools_IndexedMapOfShape shells;
   TopExp::MapShapes(part.shape, TopAbs_SHELL, shells);
   const std::size_t before = part.report.repairs.size();
+  std::map<const void*, bool> is_whole;  // of shells looked at
   for (int s = 1; s <= shells.Extent(); ++s) {
+    const void* const shell = shells(s).TShape().get();
+    if (const auto known = is_whole.find(shell); known != is_whole.end() && known->second) continue;
+    const std::size_t known_before = part.report.repairs.size();
     bool has_same = false;
     const std::vector<TopoDS_Face> faces = distinct_faces(TopExp_Explorer(shells(s), TopAbs_FACE), part, has_same);
     if (has_same) context->Replace(shells(s), shell_of(faces));
     drop_doubles_of(faces, context, part);
+    is_whole[shell] = part.report.repairs.size() == known_before;
   }
   bool ignored = false;
   drop_doubles_of(distinct_faces(TopExp_Explorer(part.shape, TopAbs_FACE, TopAbs_SHELL), part, ignored), context, part);
@@ -332,11 +359,12 @@ void turn_inverted_solids(Part& part) {
   TopTools_IndexedMapOfShape solids;
   TopExp::MapShapes(part.shape, TopAbs_SOLID, solids);
   bool is_turned = false;
+  std::map<std::pair<const void*, int>, bool> is_inverted;
   for (int s = 1; s <= solids.Extent(); ++s) {
-    if (count_free_edges(solids(s)) > 0) continue;
-    BRepClass3d_SolidClassifier where(solids(s));
-    where.PerformInfinitePoint(1e-7 * part.diagonal);
-    if (where.State() != TopAbs_IN) continue;
+    const auto [known, is_new] =
+        is_inverted.try_emplace({solids(s).TShape().get(), int(solids(s).Orientation())}, false);
+    if (is_new) known->second = is_inside_out(solids(s), part.diagonal);
+    if (!known->second) continue;
     TopoDS_Solid turned;
     BRep_Builder().MakeSolid(turned);
     for (TopoDS_Iterator it(solids(s)); it.More(); it.Next()) BRep_Builder().Add(turned, it.Value().Reversed());
