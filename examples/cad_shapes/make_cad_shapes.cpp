@@ -1,25 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes two CAD files with OpenCASCADE: make_cad_shapes FOLDER
-//   ahmed.step      the air round the Ahmed body (25-degree slant) in a wind tunnel, metres, faces with names
-//   propeller.step  three twisted blades on a hub with a round nose, millimetres
+// Makes a CAD file with OpenCASCADE: make_cad_shapes FOLDER
+//   ahmed.step  the air round the Ahmed body (25-degree slant) in a wind tunnel, millimetres, faces with names
 #include <BRepAlgoAPI_Common.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
-#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
-#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
-#include <BRepBuilderAPI_Transform.hxx>
-#include <BRepOffsetAPI_ThruSections.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakePrism.hxx>
-#include <BRepPrimAPI_MakeRevol.hxx>
 #include <BRep_Tool.hxx>
 #include <GC_MakeArcOfCircle.hxx>
-#include <GeomAPI_Interpolate.hxx>
-#include <Geom_BSplineCurve.hxx>
-#include <Geom_BSplineSurface.hxx>
 #include <Geom_CylindricalSurface.hxx>
 #include <Geom_Plane.hxx>
 #include <Geom_TrimmedCurve.hxx>
@@ -28,7 +19,6 @@
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
 #include <STEPCAFControl_Writer.hxx>
-#include <TColgp_HArray1OfPnt.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
@@ -51,15 +41,13 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// @param name_of  a name for a face, by what it lies on
-void write_step(const TopoDS_Shape& shape, const std::string& name, const char* unit,
+void write_step(const TopoDS_Shape& shape, const std::string& name,
                 const std::function<std::string(const TopoDS_Face&)>& name_of, const std::string& path) {
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   Handle(TDocStd_Document) document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
   const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   STEPCAFControl_Writer writer;
-  Interface_Static::SetCVal("xstep.cascade.unit", unit);  // numbers are written as they are
-  Interface_Static::SetCVal("write.step.unit", unit);
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
   const TDF_Label product = shapes->AddShape(shape, false);
   TDataStd_Name::Set(product, name.c_str());
@@ -72,10 +60,10 @@ void write_step(const TopoDS_Shape& shape, const std::string& name, const char* 
 
 // The Ahmed body. S. R. Ahmed, G. Ramm, G. Faltin, Some salient features of the time-averaged ground vehicle wake, SAE
 // 840300, 1984. x runs downstream from the nose, y to the left, z up from the tunnel's floor.
-constexpr double kLength = 1.044, kWidth = 0.389, kHeight = 0.288, kClearance = 0.050, kRadius = 0.100;
-constexpr double kSlantLength = 0.222, kSlantAngle = 25 * kPi / 180;
-constexpr double kStiltRadius = 0.015, kStiltX[] = {0.202, 0.672}, kStiltY = 0.327 / 2;
-constexpr double kTunnelLow[] = {-2.1, -0.935, 0}, kTunnelHigh[] = {7.9, 0.935, 1.40};
+constexpr double kLength = 1044, kWidth = 389, kHeight = 288, kClearance = 50, kRadius = 100;
+constexpr double kSlantLength = 222, kSlantAngle = 25 * kPi / 180;
+constexpr double kStiltRadius = 15, kStiltX[] = {202, 672}, kStiltY = 327.0 / 2;
+constexpr double kTunnelLow[] = {-2100, -935, 0}, kTunnelHigh[] = {7900, 935, 1400};
 
 TopoDS_Edge arc(const gp_Pnt& a, const gp_Pnt& middle, const gp_Pnt& b) {
   return BRepBuilderAPI_MakeEdge(GC_MakeArcOfCircle(a, middle, b).Value());
@@ -146,77 +134,6 @@ std::string ahmed_name(const TopoDS_Face& face) {
   return x > 0.01 && x < 0.99 ? "slant" : "body";
 }
 
-/// A closed section of a blade at this radius, round as an ellipse with a sharper rear, turned about z by its pitch.
-TopoDS_Wire section(double radius, double chord, double thickness, double turn, double rake) {
-  constexpr int kPlaces = 24;
-  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, kPlaces);
-  for (int i = 0; i < kPlaces; ++i) {
-    const double a = 2 * kPi * i / kPlaces;
-    const double x = 0.5 * chord * std::cos(a), y = 0.5 * thickness * std::sin(a) * (1 - 0.35 * std::cos(a));
-    const double camber = 0.06 * chord * std::sin(a / 2) * std::sin(a / 2);
-    points->SetValue(i + 1, gp_Pnt(x * std::cos(turn) - (y + camber) * std::sin(turn),
-                                   x * std::sin(turn) + (y + camber) * std::cos(turn) + rake, radius));
-  }
-  GeomAPI_Interpolate fit(points, true, 1e-9);
-  fit.Perform();
-  return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(fit.Curve()).Edge());
-}
-
-/// Along z from within the hub to the tip; the pitch falls from 65 to 22 degrees, sections lean forward outwards.
-TopoDS_Shape blade() {
-  BRepOffsetAPI_ThruSections skin(true, false, 1e-6);
-  constexpr int kSections = 9;
-  for (int i = 0; i < kSections; ++i) {
-    const double f = double(i) / (kSections - 1);
-    const double chord = 22 + 70 * std::sqrt(f) * std::pow(1 - f, 0.75) + 6 * f;
-    skin.AddWire(section(12 + 88 * f, chord, 9 - 7 * f, (65 - 43 * f) * kPi / 180, 12 * f * f));
-  }
-  skin.Build();
-  return skin.Shape();
-}
-
-/// A cylinder along y with a nose of half an ellipse.
-TopoDS_Shape hub() {
-  const double radius = 22, front = 30, back = 28;
-  TColgp_Array1OfPnt poles(1, 3);
-  poles(1) = gp_Pnt(0, front + 25, 0);
-  poles(2) = gp_Pnt(0, front + 25, radius);
-  poles(3) = gp_Pnt(0, front, radius);
-  TColStd_Array1OfReal weights(1, 3), knots(1, 2);
-  weights(1) = weights(3) = 1;
-  weights(2) = std::sqrt(0.5);
-  knots(1) = 0;
-  knots(2) = 1;
-  TColStd_Array1OfInteger times(1, 2);
-  times(1) = times(2) = 3;
-  BRepBuilderAPI_MakeWire wire;
-  wire.Add(BRepBuilderAPI_MakeEdge(new Geom_BSplineCurve(poles, weights, knots, times, 2)).Edge());
-  wire.Add(line({0, front, radius}, {0, -back, radius}));
-  wire.Add(line({0, -back, radius}, {0, -back, 0}));
-  wire.Add(line({0, -back, 0}, {0, front + 25, 0}));
-  return BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), gp_Ax1(gp_Pnt(), gp_Dir(0, 1, 0))).Shape();
-}
-
-TopoDS_Shape propeller() {
-  const TopoDS_Shape one = blade();
-  TopoDS_Shape all = hub();
-  for (int i = 0; i < 3; ++i) {
-    gp_Trsf turn;
-    turn.SetRotation(gp_Ax1(gp_Pnt(), gp_Dir(0, 1, 0)), 2 * kPi * i / 3);
-    all = BRepAlgoAPI_Fuse(all, BRepBuilderAPI_Transform(one, turn, true).Shape()).Shape();
-  }
-  return all;
-}
-
-/// Splines are blades but for the nose, which is turned round the axis; planes: the hub's end and tips of blades.
-std::string propeller_name(const TopoDS_Face& face) {
-  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
-  if (!Handle(Geom_BSplineSurface)::DownCast(surface).IsNull()) return "blades";
-  const auto plane = Handle(Geom_Plane)::DownCast(surface);
-  const bool is_end = !plane.IsNull() && plane->Pln().Axis().Direction().IsParallel(gp_Dir(0, 1, 0), 1e-6);
-  return plane.IsNull() || is_end ? "hub" : "tips";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -226,8 +143,7 @@ int main(int argc, char** argv) {
   }
   const std::string folder = argv[1];
   try {
-    write_step(ahmed_air(), "air", "M", ahmed_name, folder + "/ahmed.step");
-    write_step(propeller(), "propeller", "MM", propeller_name, folder + "/propeller.step");
+    write_step(ahmed_air(), "air", ahmed_name, folder + "/ahmed.step");
   } catch (const Standard_Failure& e) {
     std::fprintf(stderr, "OpenCASCADE: %s\n", e.GetMessageString());
     return 1;

@@ -338,13 +338,15 @@ TEST(NurbsCompare, D1_projection_is_as_near_as_OpenCASCADEs) {
       const gp_Pnt p(between(random, 1, theirs->NbUPoles()), between(random, 1, theirs->NbVPoles()),
                      between(random, -1, 1));
       const GeomAPI_ProjectPointOnSurf on(p, theirs);
-      if (on.NbPoints() > 0)
+      if (on.NbPoints() > 0) {
         EXPECT_LE(search.closest(point_of(p.XYZ())).distance, on.LowerDistance() + 1e-9) << words(seed, kind);
+      }
       const gp_Pnt q = random_point(random, 1);
       const GeomAPI_ProjectPointOnCurve along(q, curve);
-      if (along.NbPoints() > 0 && !is_at_knot(along.LowerDistanceParameter(), curve->Knots()))
+      if (along.NbPoints() > 0 && !is_at_knot(along.LowerDistanceParameter(), curve->Knots())) {
         EXPECT_LE(closest_on_curve(*ours, ours->range(), point_of(q.XYZ()), 257).distance, along.LowerDistance() + 1e-9)
             << words(seed, kind);
+      }
     }
   }
 }
