@@ -13,6 +13,7 @@
 #include <ShapeExtend_DataMapIteratorOfDataMapOfShapeListOfMsg.hxx>
 #include <ShapeExtend_MsgRegistrator.hxx>
 #include <ShapeFix_Shape.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
@@ -91,9 +92,22 @@ bool has_face_without_wires(const TopoDS_Shape& shape) {
   return false;
 }
 
+/// Instances of a product are checked once.
+bool is_valid(const TopoDS_Shape& shape, const Say& say) {
+  TopTools_IndexedMapOfShape pieces;
+  for (const auto& [what, avoid] :
+       {std::pair{TopAbs_SOLID, TopAbs_SHAPE}, {TopAbs_SHELL, TopAbs_SOLID}, {TopAbs_FACE, TopAbs_SHELL}})
+    for (TopExp_Explorer it(shape, what, avoid); it.More(); it.Next())
+      pieces.Add(it.Current().Located(TopLoc_Location()));
+  for (int i = 1; i <= pieces.Extent(); ++i) {
+    if (i % 64 == 1) say("checking", double(i) / pieces.Extent());
+    if (!BRepCheck_Analyzer(pieces(i)).IsValid()) return false;
+  }
+  return true;
+}
+
 void fix(Part& part, const Say& say) {
-  say("checking", -1);
-  if (BRepCheck_Analyzer(part.shape).IsValid() && !has_face_without_wires(part.shape)) return;
+  if (is_valid(part.shape, say) && !has_face_without_wires(part.shape)) return;
   const Handle(ShapeFix_Shape) fixer = new ShapeFix_Shape(part.shape);
   const Handle(ShapeExtend_MsgRegistrator) messages = new ShapeExtend_MsgRegistrator;
   fixer->SetMsgRegistrator(messages);
@@ -186,13 +200,34 @@ void sew(Part& part, const CadOptions& options, const Say& say) {
   });
 }
 
+/// What OpenCASCADE gives up at stays as it was, and that is said; the next step may do without.
+void attempt(Part& part, const char* what, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Standard_Failure& e) {
+    part.report.suspicious.push_back(
+        {"not_mended",
+         fmt::format("mending {} failed in OpenCASCADE ({} {})", what, e.DynamicType()->Name(), e.GetMessageString()),
+         {}});
+  }
+}
+
 }  // namespace
 
 void heal(Part& part, const CadOptions& options, const Say& say) {
-  BRepLib::BuildCurves3d(part.shape);
-  if (options.heals) fix(part, say);
-  if (options.sews) sew(part, options, say);
-  BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30));
+  check_corners(part);
+  note_loose_edges(part);
+  attempt(part, "curves in space", [&] { BRepLib::BuildCurves3d(part.shape); });
+  if (options.heals) {
+    attempt(part, "tiny edges", [&] { remove_tiny_edges(part); });
+    attempt(part, "parameter curves", [&] { drop_wrong_parameter_curves(part); });
+    attempt(part, "what is not valid", [&] { fix(part, say); });
+  }
+  if (options.heals) attempt(part, "double faces", [&] { drop_double_faces(part); });
+  if (options.sews) attempt(part, "free edges", [&] { sew(part, options, say); });
+  if (options.heals) attempt(part, "solids inside out", [&] { turn_inverted_solids(part); });
+  attempt(part, "parameters along edges",
+          [&] { BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30)); });
 }
 
 }  // namespace delfront::cad

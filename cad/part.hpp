@@ -60,6 +60,20 @@ Part read_file(const std::string& path, const Say& say);
 /// @brief Mends what is not valid, sews loose faces, closes shells to solids. Notes all it does.
 void heal(Part& part, const CadOptions& options, const Say& say);
 
+/// @throws Failure  an edge ends far from its corner, not by tolerance
+void check_corners(const Part& part);
+void note_loose_edges(Part& part);
+
+// Parts of mending. Each notes what it does.
+/// @brief Edges within the tolerance of their own ends become one corner.
+void remove_tiny_edges(Part& part);
+/// @brief Parameter curves that lie far from their edges are forgotten; they are found again by projection.
+void drop_wrong_parameter_curves(Part& part);
+/// @brief Of faces that a shell has twice one stays.
+void drop_double_faces(Part& part);
+/// @brief Solids with everything but their inside in them.
+void turn_inverted_solids(Part& part);
+
 /// @brief What several solids share becomes the same face of each.
 void imprint(Part& part, const Say& say);
 

@@ -3,9 +3,13 @@
 // is left to find out is in which unit the file is written, since OpenCASCADE would turn everything into millimetres.
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <Interface_ReportEntity.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
@@ -22,7 +26,9 @@
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <TransferBRep.hxx>
+#include <Transfer_Binder.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <UnitsMethods.hxx>
 #include <XCAFApp_Application.hxx>
@@ -34,6 +40,9 @@
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -239,9 +248,88 @@ Handle(TDocStd_Document) new_document() {
 
 void close(const Handle(TDocStd_Document) & document) { XCAFApp_Application::GetApplication()->Close(document); }
 
-void check_transferred(bool is_done, const TopoDS_Shape& shape, const char* what) {
-  if (!is_done || shape.IsNull() || !TopExp_Explorer(shape, TopAbs_FACE).More())
-    throw Failure(fmt::format("the {} file holds no faces that could be read", what));
+void check_transferred(bool is_done, const Part& part, const char* what) {
+  const TopoDS_Shape& shape = part.shape;
+  if (is_done && !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More()) return;
+  TopTools_IndexedMapOfShape edges;
+  if (!shape.IsNull()) TopExp::MapShapes(shape, TopAbs_EDGE, edges);
+  std::string why = fmt::format("the {} file holds no faces that could be read", what);
+  if (edges.Extent() > 0) why += fmt::format(", but {} edges; curves alone bound nothing", edges.Extent());
+  if (!part.report.suspicious.empty()) why += "; " + part.report.suspicious[0].message;
+  throw Failure(why + "; export surfaces or solids, in another version of the format or another format");
+}
+
+constexpr std::size_t kMostNotes = 200;  ///< of what a translator says
+
+bool is_face(const std::string& type) {
+  for (const char* name : {"StepShape_AdvancedFace", "StepShape_FaceSurface", "IGESGeom_TrimmedSurface",
+                           "IGESGeom_BoundedSurface", "IGESSolid_Face"})
+    if (type == name) return true;
+  return false;
+}
+
+/// StepShape_AdvancedFace as AdvancedFace.
+std::string short_type(const Handle(Standard_Transient) & entity) {
+  const std::string name = entity->DynamicType()->Name();
+  return name.substr(name.find('_') + 1);
+}
+
+/// Geometry with a reference that leads nowhere, or to something else, is what OpenCASCADE crashes at: it is refused.
+void check_references(const Handle(XSControl_WorkSession) & session) {
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Interface_ReportEntity) report = model->ReportEntity(i);
+    if (report.IsNull()) continue;
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const std::string type = entity->DynamicType()->Name();
+    const bool is_geometry = type.rfind("StepGeom_", 0) == 0 || type.rfind("StepShape_", 0) == 0;
+    const Handle(Interface_Check) check = report->Check();
+    for (int k = 1; k <= check->NbFails() && is_geometry; ++k) {
+      const std::string what = check->CFail(k);
+      if (what.find("(name)") != std::string::npos || what.find("String") != std::string::npos) continue;
+      const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+      throw Failure(fmt::format("{} ({}): {}; the file is damaged there: export it again",
+                                label.IsNull() ? "?" : label->ToCString(), short_type(entity), what));
+    }
+  }
+}
+
+/// What the translators failed at, and faces of the file that became none.
+void note_translation(const Handle(XSControl_WorkSession) & session, Part& part) {
+  const Handle(Transfer_TransientProcess) process = session->TransferReader()->TransientProcess();
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  const auto note = [&](const char* kind, const Handle(Standard_Transient) & entity, const std::string& what,
+                        Point at) {
+    if (part.report.suspicious.size() >= kMostNotes) return;
+    const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+    part.report.suspicious.push_back(
+        {kind, fmt::format("{} ({}): {}", label.IsNull() ? "?" : label->ToCString(), short_type(entity), what), at});
+  };
+  TopTools_IndexedMapOfShape kept;  // without places, which instances of a product have
+  for (TopExp_Explorer face(part.shape, TopAbs_FACE); face.More(); face.Next())
+    kept.Add(face.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD));
+  const auto is_kept = [&](const TopoDS_Shape& shape) {
+    for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
+      if (kept.Contains(face.Current().Located(TopLoc_Location()).Oriented(TopAbs_FORWARD))) return true;
+    return false;
+  };
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const Handle(Standard_Transient) entity = model->Value(i);
+    const Handle(Transfer_Binder) binder = process->Find(entity);
+    const TopoDS_Shape shape = binder.IsNull() ? TopoDS_Shape() : TransferBRep::ShapeResult(binder);
+    const TopExp_Explorer vertex(shape.IsNull() ? part.shape : shape, TopAbs_VERTEX);
+    const bool has_place = !shape.IsNull() && vertex.More();
+    const gp_Pnt p = has_place ? BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current())) : gp_Pnt();
+    const Point at{p.X(), p.Y(), p.Z()};
+    if (!binder.IsNull())
+      for (int k = 1; k <= binder->Check()->NbFails(); ++k)
+        note("not_translated", entity, binder->Check()->CFail(k), at);
+    if (!binder.IsNull())
+      for (int k = 1; k <= binder->Check()->NbWarnings(); ++k)
+        note("reader_says", entity, binder->Check()->CWarning(k), at);
+    if ((shape.IsNull() || !is_kept(shape)) && is_face(entity->DynamicType()->Name()))
+      note("lost_face", entity, "this face of the file could not be read and is missing", at);
+  }
 }
 
 /// What a file that is no STEP file at all begins with is told from one that is damaged.
@@ -263,6 +351,36 @@ bool ends_whole(const std::string& path, const std::string& mark) {
   return text.find(mark) != std::string::npos;
 }
 
+constexpr double kMostNumber = 1e101;  ///< OpenCASCADE's own infinity is 2e100
+
+/// Words that stand where numbers do, and numbers that no length can be: OpenCASCADE would go on for ever with some.
+/// @param has_strings  what stands between apostrophes says nothing
+void check_numbers(const std::string& path, bool has_strings) {
+  std::ifstream in(path, std::ios::binary);
+  std::string line, word;
+  bool is_string = false;
+  for (std::size_t number = 1; std::getline(in, line); ++number) {
+    const auto check = [&] {
+      const std::string low = lower(word);
+      const std::size_t sign = !low.empty() && (low[0] == '-' || low[0] == '+') ? 1 : 0;
+      const bool is_none = low.compare(sign, std::string::npos, "nan") == 0 || low.compare(sign, 3, "inf") == 0;
+      const bool is_number = low.size() > sign && std::isdigit(static_cast<unsigned char>(low[sign]));
+      const bool is_huge =
+          is_number && low.find('e') != std::string::npos && std::abs(std::strtod(low.c_str(), nullptr)) > kMostNumber;
+      word.clear();
+      if ((is_none && (low.size() == sign + 3 || low.compare(sign, std::string::npos, "infinity") == 0)) || is_huge)
+        throw Failure(fmt::format("line {}: {} is no number that a length can be; export it again", number, low));
+    };
+    for (const char c : line) {
+      if (has_strings && c == '\'') is_string = !is_string;
+      const bool is_end = std::strchr(" \t\r(),;='", c) != nullptr;
+      if (is_end && !word.empty()) check();
+      if (!is_end && !is_string) word += c;
+    }
+    if (!word.empty()) check();
+  }
+}
+
 bool has_end_of_iges(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string line, last;
@@ -277,11 +395,13 @@ void read_step(const std::string& path, Part& part, const Say& say) {
     throw Failure("this is no STEP file: it does not begin with ISO-10303-21");
   if (!ends_whole(path, "END-ISO-10303-21"))
     throw Failure("the STEP file is not whole: END-ISO-10303-21 is missing at its end; copy it again");
+  check_numbers(path, true);
   STEPCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   reader.SetLayerMode(true);
   if (reader.ReadFile(path.c_str()) != IFSelect_RetDone) throw Failure("the STEP file cannot be parsed");
+  check_references(reader.Reader().WS());
   say("units", -1);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
@@ -301,7 +421,8 @@ void read_step(const std::string& path, Part& part, const Say& say) {
   };
   part.shape = Document(document, name_of_entity).run(part);
   close(document);
-  check_transferred(is_done, part.shape, "STEP");
+  note_translation(reader.Reader().WS(), part);
+  check_transferred(is_done, part, "STEP");
 }
 
 void read_iges(const std::string& path, Part& part, const Say& say) {
@@ -326,12 +447,14 @@ void read_iges(const std::string& path, Part& part, const Say& say) {
   watch.check();
   part.shape = Document(document, [](const TopoDS_Shape&) { return std::string(); }).run(part);
   close(document);
-  check_transferred(is_done, part.shape, "IGES");
+  note_translation(reader.WS(), part);
+  check_transferred(is_done, part, "IGES");
 }
 
 /// OpenCASCADE's own text; EGADS puts a line before it and its attributes after it.
 void read_brep_text(const std::string& path, Part& part, const char* format) {
   part.report.format = format;
+  check_numbers(path, false);
   std::ifstream in(path, std::ios::binary);
   std::stringstream text;
   text << in.rdbuf();
@@ -352,7 +475,7 @@ void read_brep_text(const std::string& path, Part& part, const char* format) {
   } catch (const std::ios::failure&) {
     throw Failure(fmt::format("the {} file is not whole, or damaged", format));
   }
-  check_transferred(true, part.shape, format);
+  check_transferred(true, part, format);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
+#include "guard.hpp"
 #include "interrupt.hpp"
 #include "pipeline/report_json.hpp"
 
@@ -35,6 +36,7 @@ void Command::prepare(Context& context, Terminal& terminal) const {
   context.threads = common_.threads > 0 ? common_.threads : all;
   context.cancel = stop_on_interrupt();
   terminal.attach(context);
+  watch_cad_reading(context);
 }
 
 std::string format_list() {

@@ -8,12 +8,14 @@
 
 #include "commands.hpp"
 #include "delfront/brep.hpp"
+#include "delfront/cad.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/geometry_text.hpp"
 #include "delfront/io.hpp"
 #include "delfront/model.hpp"
 #include "delfront/surface_check.hpp"
 #include "geometry_facts.hpp"
+#include "guard.hpp"
 #include "pipeline/boundaries.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "pipeline/planar_job.hpp"
@@ -143,6 +145,8 @@ class CheckCommand : public Command {
 
   int run(const std::string&) override {
     Terminal terminal = make_terminal();
+    if (is_cad_file(file_))
+      if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);
     for (const std::string& path : {defects_, json_}) check_output(path, file_);
@@ -215,6 +219,8 @@ class InfoCommand : public Command {
 
   int run(const std::string&) override {
     Terminal terminal = make_terminal();
+    if (is_cad_file(file_))
+      if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);
     check_output(json_, file_);

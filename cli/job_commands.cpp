@@ -9,9 +9,11 @@
 #include <map>
 
 #include "commands.hpp"
+#include "delfront/cad.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/geometry_text.hpp"
 #include "delfront/job.hpp"
+#include "guard.hpp"
 #include "pipeline/option_table.hpp"
 
 namespace delfront::cli {
@@ -94,6 +96,9 @@ class JobCommand : public Command {
       return 0;
     }
     Terminal terminal = make_terminal();
+    const auto& files = options.input.files;
+    if (std::any_of(files.begin(), files.end(), is_cad_file))
+      if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);
     const JobResult result = run_job(options, context, command_line, kind_);

@@ -181,6 +181,11 @@ void Terminal::clear_bar() {
   has_bar_ = false;
 }
 
+void Terminal::clear_bar_of_others() {
+  has_bar_ = style_ == ProgressStyle::bar;
+  clear_bar();
+}
+
 void Terminal::log(LogLevel level, const std::string& message) {
   if (level != LogLevel::warning && verbosity_ < 1) return;
   if (verbosity_ < 0) return;

@@ -32,6 +32,8 @@ class Terminal {
   void detail(const std::string& message);
   /// @brief Remove a bar that stands there.
   void clear_bar();
+  /// @brief The same, of one that another process may have left.
+  void clear_bar_of_others();
   int verbosity() const { return verbosity_; }
 
  private:

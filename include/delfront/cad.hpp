@@ -58,6 +58,11 @@ struct CadReport {
   std::vector<CadNote> repairs, suspicious;
 };
 
+/// @brief What Context::on_log hears (debug, each followed by the path) before and after OpenCASCADE's own code is at
+/// work: a damaged file may crash it, and whoever guards against that knows by these what it was at.
+inline constexpr const char* kCadReadingBegins = "OpenCASCADE reads ";
+inline constexpr const char* kCadReadingEnds = "OpenCASCADE has read ";
+
 /// @brief Read a CAD file. Coordinates stay in the unit of the file.
 ///
 /// Planes, cylinders, cones, spheres, tori, lines, circles, ellipses, splines, surfaces by extrusion and by revolution

@@ -15,13 +15,16 @@
 namespace delfront::cad {
 namespace {
 
-constexpr int kSamples = 21;          ///< along an edge, where it is compared with its parameter curves
-constexpr double kRounding = 1e-9;    ///< of the diagonal: deviations that are none
-constexpr double kLoose = 1e-3;       ///< of an edge's length: deviations that a projection may mend
-constexpr double kMended = 0.5;       ///< of the deviation: what a projection must come below
-constexpr double kNoGap = 1e-7;       ///< of the loop's extent in the parameter plane
-constexpr double kTinyEdge = 1e-5;    ///< of the diagonal
-constexpr double kLooseShare = 1e-4;  ///< of the diagonal: tolerances worth a word
+constexpr int kSamples = 21;        ///< along an edge, where it is compared with its parameter curves
+constexpr double kRounding = 1e-9;  ///< of the diagonal: deviations that are none
+constexpr double kLoose = 1e-3;     ///< of an edge's length: deviations that a projection may mend
+constexpr double kMended = 0.5;     ///< of the deviation: what a projection must come below
+constexpr double kNoGap = 1e-7;     ///< of the loop's extent in the parameter plane
+constexpr double kDigits = 1e-10;   ///< least size of a shape, of its distance from the origin
+constexpr double kBeside = 1e-3;    ///< of the diagonal: an edge that ends that far from its corner has another one
+constexpr double kBesideTolerance = 10;  ///< the same, of the corner's tolerance
+constexpr double kTinyEdge = 1e-5;       ///< of the diagonal
+constexpr double kLooseShare = 1e-4;     ///< of the diagonal: tolerances worth a word
 
 struct Deviation {
   double most = 0;
@@ -52,6 +55,11 @@ class Builder {
   void add_corners_and_edges() {
     Box box;
     for (const Vertex& v : data_.vertices) {
+      if (!std::isfinite(length(v.at)))
+        throw InputError(
+            fmt::format("corner {} of the CAD file lies at ({:g}, {:g}, {:g}), which is no place; export it "
+                        "again",
+                        brep_.corners.size() + 1, v.at.x, v.at.y, v.at.z));
       brep_.corners.push_back({v.at, v.name, v.tolerance});
       box.add(v.at);
     }
@@ -72,7 +80,19 @@ class Builder {
       brep_.edges.push_back(std::move(edge));
     }
     diagonal_ = box.diagonal();
+    check_digits(box);
     for (std::size_t e = 0; e < brep_.edges.size(); ++e) raise_to_corners(e);
+  }
+
+  /// Far from the origin coordinates have too few digits left for the shape.
+  void check_digits(const Box& box) const {
+    const double farthest = std::max(length(box.low), length(box.high));
+    if (!(diagonal_ > kDigits * farthest))
+      throw InputError(
+          fmt::format("the geometry is {:.3g} in size, but lies {:.3g} from the origin: its coordinates have "
+                      "too few digits; move it to the origin and export it again",
+                      diagonal_, farthest),
+          {{box.low, {}}});
   }
 
   std::vector<Place> place_of(std::size_t e) const {
@@ -94,6 +114,12 @@ class Builder {
       BrepCorner& corner = brep_.corners[edge.corners[k]];
       const double away = distance(edge.curve->at(edge.range[k]), corner.at);
       if (away <= std::max(corner.tolerance, kRounding * diagonal_)) continue;
+      if (!(away <= std::max(kBesideTolerance * corner.tolerance, kBeside * diagonal_)))
+        throw InputError(
+            fmt::format("{} of the CAD file ends {:.3g} from its corner {}, at ({:g}, {:g}, {:g}): the file "
+                        "contradicts itself; export it again, or mend the part there",
+                        edge_name(e), away, edge.corners[k].value + 1, corner.at.x, corner.at.y, corner.at.z),
+            {{corner.at, {std::uint32_t(e)}}});
       if (away > 2 * std::max(corner.tolerance, 1e-7 * diagonal_))
         note("edge_off_its_corner",
              fmt::format("{} ends {:.3g} from corner {}, whose tolerance is {:.3g}", edge_name(e), away,

@@ -65,7 +65,9 @@ Brep read_cad(const std::string& path, const CadOptions& options, CadReport& rep
   request.options = options;
   request.progress = &Listener::hear;
   request.user = &listener;
+  context.log(LogLevel::debug, kCadReadingBegins + path);
   const std::unique_ptr<cad::Result, void (*)(cad::Result*)> result(module->read(&request), module->release);
+  context.log(LogLevel::debug, kCadReadingEnds + path);
   if (listener.thrown) std::rethrow_exception(listener.thrown);
   if (result->ending != cad::Result::Ending::done) throw InputError(fmt::format("{}: {}", path, result->error));
   report = result->report;
