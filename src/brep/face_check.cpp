@@ -85,7 +85,7 @@ void check_face_grid(const BrepFace& face, double most_angle, double tolerance, 
       if (grid.points[p].is_pole || dot(twice, normal[p]) >= least * size) continue;
       if (dot(twice, normal[p]) < least_allowed * size &&
           (size < kLowShare * tolerance * longest ||
-           (dot(twice, n) > 0 && is_sharper(surface, grid.points[p], longest))))
+           (dot(twice, n) > 0 && (grid.points[p].is_vague || is_sharper(surface, grid.points[p], longest)))))
         continue;
       least = dot(twice, normal[p]) / size;
       worst_at = middle;

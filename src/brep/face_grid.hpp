@@ -25,6 +25,7 @@ struct FacePoint {
   Point2 uv;
   std::uint32_t vertex = kNoVertex;  ///< of the Brep's edges; kNoVertex: the face's own
   bool is_pole = false;              ///< uv says nothing along the degenerate side
+  bool is_vague = false;             ///< the surface's normal there says nothing of triangles
 };
 
 /// @brief A face's points and loops in its parameter plane, and later its triangles.

@@ -106,7 +106,8 @@ class SmallAngles {
     const Point area = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
     for (const std::uint32_t p : t) {
       const FacePoint& point = grid_.points[p];
-      if (!point.is_pole && !(dot(area, surface_.normal(point.uv)) > kAgree * length(area))) return false;
+      if (!point.is_pole && !point.is_vague && !(dot(area, surface_.normal(point.uv)) > kAgree * length(area)))
+        return false;
     }
     return true;
   }
@@ -217,7 +218,7 @@ class SmallAngles {
     ring_normal_.clear();
     for (const std::uint32_t q : ring_.points) {
       const FacePoint& point = grid_.points[q];
-      ring_normal_.push_back(point.is_pole ? Point{} : surface_.normal(point.uv));
+      ring_normal_.push_back(point.is_pole || point.is_vague ? Point{} : surface_.normal(point.uv));
     }
     double worst = worst_of_ring(moved.at, normal);
     bool is_better = false;

@@ -11,6 +11,7 @@
 #include "brep/assemble_brep.hpp"
 #include "brep/edge_points.hpp"
 #include "brep/face_mesh.hpp"
+#include "brep/vague_normals.hpp"
 #include "delfront/errors.hpp"
 #include "geometry/angles.hpp"
 #include "geometry/surface_findings.hpp"
@@ -99,7 +100,7 @@ class BrepGridder {
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
-    const FaceGrid border = make_face_border(brep_, face, edges_);
+    FaceGrid border = make_face_border(brep_, face, edges_);
     const std::vector<std::uint64_t> kept_sides = kept_sides_of(border);
     // a surface that folds has no grid that faces as it does; whether one crosses itself is told exactly afterwards
     const bool gives_way = options_.checks_crossings && failures_[f.index()] >= kFolded;
@@ -114,6 +115,7 @@ class BrepGridder {
     const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
     if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
     if (options_.method == BrepOptions::Method::mapped) return;
+    mark_vague_normals(*face.surface, border);
     const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
     const auto grid_in_space = [&] {
       const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });

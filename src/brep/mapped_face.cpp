@@ -11,6 +11,7 @@
 
 #include "brep/chart_mesh.hpp"
 #include "brep/face_parts.hpp"
+#include "brep/step_metric.hpp"
 #include "delfront/errors.hpp"
 #include "planar/front.hpp"
 #include "planar/kernel.hpp"
@@ -199,7 +200,9 @@ class ChartedPart {
         add_segment(chart_point(loop[i]), chart_point(loop[(i + 1) % loop.size()]));
   }
 
-  void fill(const WantedSize& size, bool is_lowered, const BrepOptions& options, Context& context) {
+  /// @param by_steps  the metric is that of whole sides
+  void fill(const WantedSize& size, bool is_lowered, bool by_steps, const ParameterBox& box, const BrepOptions& options,
+            Context& context) {
     if (!has_area()) return grid_.fail("its border is a line in the parameter plane", grid_.points[origin_[0]].at);
     PlanarGrid plane;
     plane.complex.point.assign(domain_.points.begin(), domain_.points.end());
@@ -215,11 +218,16 @@ class ChartedPart {
     Box extent;
     for (const Point2 p : domain_.points) extent.add(Point{p.x, p.y, 0});
     const ChartMetric metric(chart_, size, is_lowered, 1e-7 * extent.diagonal());
-    fill_by_front(plane, metric, quiet);
+    if (by_steps)
+      fill_by_front(plane, StepMetric(metric, chart_, box), quiet);
+    else
+      fill_by_front(plane, metric, quiet);
     plane.complex.index_vertices();
     std::vector<Point> border;
     for (const std::uint32_t p : origin_) border.push_back(grid_.points[p].at);
     ChartMesh mesh(plane.complex, chart_, std::move(border));
+    for (VertexIndex v = 0; v < origin_.size(); ++v)
+      if (grid_.points[origin_[v]].is_vague) mesh.forget_normal(v);
     mesh.improve(options.smoothing_passes, context);
     take(plane.complex, mesh.at());
   }
@@ -304,7 +312,7 @@ void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions
       const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, takes_any, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
-      charted.fill(size, size.is_lowered_on(*face.surface, box), options, context);
+      charted.fill(size, size.is_lowered_on(*face.surface, box), takes_any, box, options, context);
       if (!grid.gave_up.empty()) return;
     }
   } catch (const InputError& e) {

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "brep/face_grid.hpp"
+
+namespace delfront {
+
+/// @brief Mark points of a border where the surface's normal says nothing of triangles as long as the border's sides:
+/// most of what is some way off on the surface faces against it.
+///
+/// So it is where the mapping folds (du x dv passes through 0 and turns round) and along lips that are sharper than the
+/// sides are long.
+void mark_vague_normals(const SmoothSurface& surface, FaceGrid& border);
+
+}  // namespace delfront
