@@ -25,7 +25,7 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
-constexpr double kFairAngleDeg = 3;          ///< below, another way is tried
+constexpr double kFairAngleDeg = 15;         ///< below, another way is tried
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
 constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
@@ -123,12 +123,14 @@ class BrepGridder {
       return is_done;
     };
     const bool is_free = options_.method == BrepOptions::Method::choose;
-    if (is_free && border.points.size() > kMostForDirect && fill([&] { map(true); })) return;
-    if (grid_in_space() && smallest_angle_of(grid) > kFairAngleDeg) return;
-    if (!is_free) return;
-    const FaceGrid direct = grid;
-    if (!fill([&] { map(true); }) || (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
-      grid = direct;
+    if (!is_free) {
+      grid_in_space();
+      return;
+    }
+    const bool is_charted = fill([&] { map(true); });
+    if (is_charted && (border.points.size() > kMostForDirect || smallest_angle_of(grid) > kFairAngleDeg)) return;
+    const FaceGrid charted = grid;
+    if (!grid_in_space() || (is_charted && smallest_angle_of(charted) >= smallest_angle_of(grid))) grid = charted;
   }
 
   double tolerance_of(const BrepFace& face) const {
