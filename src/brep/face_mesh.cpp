@@ -53,6 +53,8 @@ class SmallAngles {
   Point at(std::uint32_t p) const { return grid_.points[p].at; }
   double sine(const std::array<std::uint32_t, 3>& t) const { return squared_sine(at(t[0]), at(t[1]), at(t[2])); }
 
+  Point normal_at(Point2 uv) const { return grid_.facing(surface_.normal(uv)); }
+
   void drop_collapsed() {
     is_collapsed_ = false;
     std::erase_if(grid_.triangles, [](const auto& t) { return t[0] == kNone; });
@@ -106,8 +108,7 @@ class SmallAngles {
     const Point area = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
     for (const std::uint32_t p : t) {
       const FacePoint& point = grid_.points[p];
-      if (!point.is_pole && !point.is_vague && !(dot(area, surface_.normal(point.uv)) > kAgree * length(area)))
-        return false;
+      if (!point.is_pole && !point.is_vague && !(dot(area, normal_at(point.uv)) > kAgree * length(area))) return false;
     }
     return true;
   }
@@ -139,7 +140,7 @@ class SmallAngles {
     links_.fan(q, fan_);
     double before_worst = 1, after_worst = 1, longest = 0;
     for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, distance(at(p), at(ring_.points[k])));
-    const Point normal = surface_.normal(grid_.points[p].uv);
+    const Point normal = normal_at(grid_.points[p].uv);
     for (std::size_t k = 0; k < n; ++k) {
       const std::uint32_t a = ring_.points[k], b = ring_.points[(k + 1) % n];
       before_worst = std::min(before_worst, sine({p, a, b}));
@@ -214,11 +215,11 @@ class SmallAngles {
     --lifts_left_;
     double reach = 0;
     for (const std::uint32_t q : ring_.points) reach += 0.25 * distance(at(q), moved.at) / double(ring_.points.size());
-    Point normal = surface_.normal(moved.uv);
+    Point normal = normal_at(moved.uv);
     ring_normal_.clear();
     for (const std::uint32_t q : ring_.points) {
       const FacePoint& point = grid_.points[q];
-      ring_normal_.push_back(point.is_pole || point.is_vague ? Point{} : surface_.normal(point.uv));
+      ring_normal_.push_back(point.is_pole || point.is_vague ? Point{} : normal_at(point.uv));
     }
     double worst = worst_of_ring(moved.at, normal);
     bool is_better = false;
@@ -230,7 +231,7 @@ class SmallAngles {
         const double angle = d * 2 * std::numbers::pi / kDirections;
         const Point to = moved.at + reach * (std::cos(angle) * e + std::sin(angle) * f);
         const Point2 uv = surface_.closest(to, moved.uv);
-        const Point place = surface_.at(uv), n = surface_.normal(uv);
+        const Point place = surface_.at(uv), n = normal_at(uv);
         const double then = worst_of_ring(place, n);
         if (then < worst + kLeastGain) continue;
         moved.at = place;

@@ -28,6 +28,7 @@ constexpr std::size_t kPlacesOfFace = 200;
 constexpr double kFairAngleDeg = 15;         ///< below, another way is tried
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
+constexpr int kTooOften = 2;                 ///< failures of a face until even charts are not asked any more
 constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
 
 class BrepGridder {
@@ -112,25 +113,28 @@ class BrepGridder {
       check_face_grid(face, most_angle, tolerance_of(face), grid);
       return grid.gave_up.empty();
     };
-    const auto map = [&](bool takes_any) { grid_mapped(face, wanted_, options_, takes_any, grid, context_); };
-    if (options_.method != BrepOptions::Method::direct && fill([&] { map(false); })) return;
-    if (options_.method == BrepOptions::Method::mapped) return;
-    mark_vague_normals(*face.surface, border);
-    const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
-    const auto grid_in_space = [&] {
-      const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
-      grid.why_direct = why;
-      return is_done;
+    const auto map = [&](ChartWay way) {
+      return fill([&] { grid_mapped(face, wanted_, options_, way, grid, context_); });
     };
-    const bool is_free = options_.method == BrepOptions::Method::choose;
-    if (!is_free) {
-      grid_in_space();
-      return;
-    }
-    const bool is_charted = fill([&] { map(true); });
-    if (is_charted && (border.points.size() > kMostForDirect || smallest_angle_of(grid) > kFairAngleDeg)) return;
-    const FaceGrid charted = grid;
-    if (!grid_in_space() || (is_charted && smallest_angle_of(charted) >= smallest_angle_of(grid))) grid = charted;
+    const bool is_direct = options_.method == BrepOptions::Method::direct;
+    const bool may_fold = turns_round(*face.surface, border);
+    const bool is_mapped_only = options_.method == BrepOptions::Method::mapped;
+    const bool tries_even = !is_direct && !may_fold && failures_[f.index()] < kTooOften;
+    if ((is_mapped_only || tries_even) && (map(ChartWay::even) || is_mapped_only)) return;
+    const std::string why = is_direct ? "asked for" : may_fold ? "its normals turn round" : grid.gave_up;
+    mark_vague_normals(*face.surface, border);
+    FaceGrid best;
+    double best_angle = -1;
+    const auto keeps = [&](bool is_done) {
+      const double angle = is_done ? smallest_angle_of(grid) : -1;
+      if (angle > best_angle) best = grid, best_angle = angle;
+      return best_angle > kFairAngleDeg;
+    };
+    const bool is_mapped = !is_direct && (keeps(map(ChartWay::flat)) || keeps(map(ChartWay::any)) ||
+                                          (best_angle >= 0 && border.points.size() > kMostForDirect));
+    if (!is_mapped) keeps(fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); }));
+    if (best_angle >= 0) grid = std::move(best);
+    grid.why_direct = why.empty() ? "its grids in even charts failed" : why;
   }
 
   double tolerance_of(const BrepFace& face) const {
@@ -208,6 +212,10 @@ class BrepGridder {
       r.faces[f].why = grid.why_direct;
       r.largest_distance = std::max(r.largest_distance, grid.largest_distance);
       r.largest_normal_angle_deg = std::max(r.largest_normal_angle_deg, grid.largest_angle / kDegree);
+      if (grid.is_folded)
+        context_.log(
+            LogLevel::warning,
+            fmt::format("face '{}' folds over itself in its parameters: it is gridded on its plane", r.faces[f].name));
       if (grid.largest_angle > options_.normal_angle_deg * kDegree)
         context_.log(LogLevel::warning,
                      fmt::format("face '{}' folds: triangles of it differ from its normals by up to {:.0f} degrees; "

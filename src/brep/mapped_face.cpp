@@ -190,6 +190,25 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
   return best;
 }
 
+/// On the plane of the border's area.
+std::optional<Chart> flat_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
+                                FaceGrid& grid) {
+  Point area;
+  const Point first = grid.points[part.loops[0][0]].at;
+  for (const auto& loop : part.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      area = area + cross(grid.points[loop[i]].at - first, grid.points[loop[(i + 1) % loop.size()]].at - first);
+  if (length(area) > 0) {
+    const auto plane = std::make_shared<const PlaneMap>(surface, box, area / length(area));
+    if (plane->is_flat()) {
+      grid.up = area / length(area);
+      return Chart(surface, plane);
+    }
+  }
+  grid.fail("it is not flat", first);
+  return std::nullopt;
+}
+
 /// A part in its chart, before and after the front.
 class ChartedPart {
  public:
@@ -304,15 +323,17 @@ class ChartedPart {
 
 }  // namespace
 
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, bool takes_any,
-                 FaceGrid& grid, Context& context) {
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, ChartWay way, FaceGrid& grid,
+                 Context& context) {
   try {
     for (const FacePart& part : find_parts(face, size, grid)) {
       const ParameterBox box = box_of(grid, part);
-      const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, takes_any, grid);
+      const std::optional<Chart> chart = way == ChartWay::flat
+                                             ? flat_chart(*face.surface, part, box, grid)
+                                             : choose_chart(*face.surface, part, box, size, way == ChartWay::any, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
-      charted.fill(size, size.is_lowered_on(*face.surface, box), takes_any, box, options, context);
+      charted.fill(size, size.is_lowered_on(*face.surface, box), way == ChartWay::any, box, options, context);
       if (!grid.gave_up.empty()) return;
     }
   } catch (const InputError& e) {

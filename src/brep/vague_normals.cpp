@@ -12,6 +12,7 @@ constexpr double kReach = 0.4;  ///< of the sides at a point
 constexpr double kNear = 0.02;  ///< of them: places nearer than that say nothing
 constexpr int kDirections = 8, kTries = 12;
 constexpr double kLeastFactor = 0.1;
+constexpr double kTurnedRound = -0.5;  ///< cosine
 
 /// A place on the surface about that far from one, in a direction of the parameters.
 Point2 place_off(const SmoothSurface& surface, const SurfaceTangents& from, Point2 uv, double angle, double reach) {
@@ -52,6 +53,19 @@ void mark_vague_normals(const SmoothSurface& surface, FaceGrid& border) {
       }
       p.is_vague = against >= with && against > 0;
     }
+}
+
+bool turns_round(const SmoothSurface& surface, const FaceGrid& border) {
+  for (const auto& loop : border.loops) {
+    Point last;
+    for (std::size_t i = 0; i <= loop.size(); ++i) {
+      const FacePoint& p = border.points[loop[i % loop.size()]];
+      const Point normal = p.is_pole ? Point{} : surface.normal(p.uv);
+      if (dot(normal, last) < kTurnedRound) return true;
+      last = normal;
+    }
+  }
+  return false;
 }
 
 }  // namespace delfront

@@ -11,4 +11,8 @@ namespace delfront {
 /// sides are long.
 void mark_vague_normals(const SmoothSurface& surface, FaceGrid& border);
 
+/// @brief Whether normals turn round from one point of a border to the next: what even charts make of such a face may
+/// fold.
+bool turns_round(const SmoothSurface& surface, const FaceGrid& border);
+
 }  // namespace delfront
