@@ -179,16 +179,20 @@ class BrepGridder {
     return is_whole;
   }
 
+  /// Sizes are lowered where triangles cross; but first bends that ask for sides far below them are left alone, as
+  /// surfaces may cross by less than such sides: at lips, and where a tolerance says that they meet.
   /// @return whether triangles meet in common corners and sides alone
   bool mend_crossings(const Model& model) {
     const Surface surface(model);
     std::vector<Finding> findings;
     find_bad_triangles(surface, findings);
     find_intersections(surface, findings, context_);
+    const auto is_error = [](const Finding& finding) { return finding.severity == Severity::error; };
+    if (std::any_of(findings.begin(), findings.end(), is_error) && wanted_.forgo_fine_bends()) return false;
     bool is_sound = true;
     std::vector<bool> is_done(grids_.size(), false);
     for (const Finding& finding : findings) {
-      if (finding.severity != Severity::error) continue;
+      if (!is_error(finding)) continue;
       is_sound = false;
       for (const Place& place : finding.places)
         for (const std::uint32_t f : place.ids) {
