@@ -96,8 +96,8 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped; else directly in space, or in charts that are far from lengths in space where that gives better angles.
-  /// Along long borders those charts come first.
+  /// In even charts; else on its plane, in charts that are far from lengths in space, or directly in space: the first
+  /// with fair angles, or the best. Along long borders any chart comes before the direct way.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
