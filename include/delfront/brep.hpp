@@ -147,7 +147,7 @@ struct Brep {
 void check_brep(const Brep& brep);
 
 struct BrepOptions {
-  /// @brief How faces are gridded. choose: mapped, and directly in space where that fails.
+  /// @brief How faces are gridded. choose: by even charts, and in other ways where those fail.
   enum class Method : std::uint8_t { choose, mapped, direct };
   Method method = Method::choose;
   double most_turn_deg = 40;     ///< sides are so short that neither edges nor surfaces turn by more along them
@@ -165,7 +165,7 @@ struct BrepOptions {
 struct BrepFaceReport {
   std::string name;
   bool is_mapped = false;  ///< else directly in space
-  std::string why;         ///< the mapped way was not taken, or failed
+  std::string why;         ///< even charts were not taken, or failed
   std::size_t triangles = 0;
   double min_angle_deg = 180;
 };
@@ -199,7 +199,8 @@ struct BrepGridReport {
 /// Edges are divided first, by the integral of 1 / h along them; faces that share one share its points. A face is
 /// filled by the planar front in its parameter plane (near a pole: in polar coordinates round it) with the metric
 /// J^T J / h^2, then smoothed and flipped in space, with exact validity in the plane. Where its mapping is too bad for
-/// that, the front on discrete surfaces grids a fine triangulation of it, whose new points are then put on the surface.
+/// that, it is seen from above if it is almost flat, or gridded with a metric of whole sides, or the front on discrete
+/// surfaces grids a fine triangulation of it, whose new points are then put on the surface.
 /// Model::input_face is the face of a triangle.
 /// @param size  wanted sides; metrics are not used
 /// @throws InputError    the Brep is not valid (see check_brep)

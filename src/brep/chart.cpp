@@ -137,6 +137,7 @@ void Chart::make_polar(const ParameterBox& box) {
 }
 
 Point2 Chart::to_chart(Point2 uv) const {
+  if (plane_) return plane_->to_plane(uv);
   if (!is_polar()) return {u_.at(uv.x), v_.at(uv.y)};
   const double radial = is_radial_v() ? uv.y : uv.x, angular = is_radial_v() ? uv.x : uv.y;
   const double radius = radius_.at(is_low() ? radial - pole_at_ : pole_at_ - radial);
@@ -145,12 +146,17 @@ Point2 Chart::to_chart(Point2 uv) const {
 }
 
 Point2 Chart::to_uv(Point2 xy) const {
+  if (plane_) return plane_->to_uv(xy);
   if (!is_polar()) return {u_.inverse(xy.x).x, v_.inverse(xy.y).x};
   const double away = radius_.inverse(std::hypot(xy.x, xy.y)).x;
   return uv_of(middle_ + std::atan2(xy.y, xy.x) / angle_, is_low() ? pole_at_ + away : pole_at_ - away);
 }
 
 Chart::Place Chart::place(Point2 xy) const {
+  if (plane_) {
+    const PlaneMap::Place p = plane_->place(xy);
+    return {p.uv, p.at, p.x, p.y};
+  }
   if (!is_polar()) {
     const auto u = u_.inverse(xy.x), v = v_.inverse(xy.y);
     const SurfaceTangents s = surface_.tangents({u.x, v.x});

@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "brep/plane_map.hpp"
 #include "delfront/brep.hpp"
 
 namespace delfront {
@@ -28,13 +29,17 @@ class RisingTable {
 /// linear: u and v, each stretched to the mean length along it. polar: round a degenerate side, which is the origin;
 /// the angle is that parameter along it, the radius such that the metric of a surface of revolution is the same
 /// multiple in both directions everywhere but for a constant: on a sphere the stereographic projection; a cone is
-/// unrolled. Both keep the orientation of (u, v), and are about 1 wide.
+/// unrolled. flat: straight down to a plane. All keep the orientation of (u, v), and are about 1 wide.
 class Chart {
  public:
   enum class Pole : std::uint8_t { none, u_low, u_high, v_low, v_high };
 
   /// @param box  of what is to be mapped; finite
   Chart(const SmoothSurface& surface, const ParameterBox& box, Pole pole);
+
+  /// @brief Flat.
+  Chart(const SmoothSurface& surface, std::shared_ptr<const PlaneMap> plane)
+      : surface_(surface), pole_(Pole::none), plane_(std::move(plane)) {}
 
   bool is_polar() const { return pole_ != Pole::none; }
   Point2 to_chart(Point2 uv) const;
@@ -62,12 +67,13 @@ class Chart {
 
   const SmoothSurface& surface_;
   Pole pole_;
-  RisingTable u_, v_;    ///< linear
-  RisingTable radius_;   ///< polar: by the distance of the radial parameter from the pole's
-  double pole_at_ = 0;   ///< the radial parameter there
-  double middle_ = 0;    ///< angular parameter at angle 0
-  double angle_ = 1;     ///< radians a unit of it, with the sign that keeps orientation
-  double smallest_ = 0;  ///< radius that counts as the origin
+  std::shared_ptr<const PlaneMap> plane_;  ///< flat; else null
+  RisingTable u_, v_;                      ///< linear
+  RisingTable radius_;                     ///< polar: by the distance of the radial parameter from the pole's
+  double pole_at_ = 0;                     ///< the radial parameter there
+  double middle_ = 0;                      ///< angular parameter at angle 0
+  double angle_ = 1;                       ///< radians a unit of it, with the sign that keeps orientation
+  double smallest_ = 0;                    ///< radius that counts as the origin
 };
 
 }  // namespace delfront

@@ -121,6 +121,7 @@ double ChartMesh::agreement(Point area, const std::array<VertexIndex, 3>& corner
   for (const VertexIndex v : corners) {
     if (chart_.is_polar() && c_.point[v] == Point2{0, 0}) continue;
     const Point n = cross(x_[v], y_[v]);
+    if (n == Point{}) continue;
     least = std::min(least, dot(area, n) / std::sqrt(squared_length(area) * squared_length(n)));
   }
   return least;

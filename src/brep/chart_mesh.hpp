@@ -17,6 +17,9 @@ class ChartMesh {
   /// @pre complex.vertex_tri is filled
   ChartMesh(TriComplex& complex, const Chart& chart, std::vector<Point> at);
 
+  /// @brief Triangles are not asked how they face at this vertex of the border.
+  void forget_normal(VertexIndex v) { x_[v] = y_[v] = {}; }
+
   /// @brief Passes of moves, with flips before, between and after.
   void improve(int passes, const Context& context);
 

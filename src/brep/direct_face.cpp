@@ -48,7 +48,7 @@ class BorderMaker {
       border_.point.push_back(p.vertex);
       border_.at.push_back(p.at);
       border_.normal.push_back(normal);
-      border_.is_vague.push_back(p.is_pole && is_tip(p));
+      border_.is_vague.push_back(p.is_vague || (p.is_pole && is_tip(p)));
     }
     return it->second;
   }

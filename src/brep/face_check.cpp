@@ -69,7 +69,11 @@ void check_face_grid(const BrepFace& face, double most_angle, double tolerance, 
   const SmoothSurface& surface = *face.surface;
   std::vector<Point> normal(grid.points.size());
   for (std::size_t i = 0; i < normal.size(); ++i)
-    if (!grid.points[i].is_pole) normal[i] = normal_of(surface, grid.points[i].uv);
+    if (!grid.points[i].is_pole) {
+      const Point n = normal_of(surface, grid.points[i].uv);
+      normal[i] = grid.facing(n);
+      grid.is_folded = grid.is_folded || dot(n, grid.up) < 0;
+    }
   const double least_allowed = std::cos(most_angle);
   double least = 1;
   Point worst_at;
@@ -79,13 +83,13 @@ void check_face_grid(const BrepFace& face, double most_angle, double tolerance, 
     const double size = length(twice);
     if (!(size > 0)) return grid.fail("a triangle has no area", middle);
     const SurfaceTangents there = surface.tangents(middle_of(surface, grid, t, middle));
-    const Point n = cross(there.u, there.v);
+    const Point n = grid.facing(cross(there.u, there.v));
     const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
     for (const std::uint32_t p : t) {
       if (grid.points[p].is_pole || dot(twice, normal[p]) >= least * size) continue;
       if (dot(twice, normal[p]) < least_allowed * size &&
           (size < kLowShare * tolerance * longest ||
-           (dot(twice, n) > 0 && is_sharper(surface, grid.points[p], longest))))
+           (dot(twice, n) > 0 && (grid.points[p].is_vague || is_sharper(surface, grid.points[p], longest)))))
         continue;
       least = dot(twice, normal[p]) / size;
       worst_at = middle;

@@ -25,6 +25,7 @@ struct FacePoint {
   Point2 uv;
   std::uint32_t vertex = kNoVertex;  ///< of the Brep's edges; kNoVertex: the face's own
   bool is_pole = false;              ///< uv says nothing along the degenerate side
+  bool is_vague = false;             ///< the surface's normal there says nothing of triangles
 };
 
 /// @brief A face's points and loops in its parameter plane, and later its triangles.
@@ -35,9 +36,14 @@ struct FaceGrid {
   bool is_mapped = false;
   std::string gave_up;  ///< why there are no triangles; empty: there are
   Point gave_up_at;
-  std::string why_direct;       ///< why it is not mapped
+  std::string why_direct;       ///< why it is not mapped in even charts
+  Point up;                     ///< of a flat chart: the side that the face shows, wherever its mapping folds; else 0
+  bool is_folded = false;       ///< normals that are against it were met
   double largest_distance = 0;  ///< of triangles' middles from the surface
   double largest_angle = 0;     ///< between normals of triangles and surface, radians
+
+  /// @brief A normal of the surface, turned round where the mapping folds.
+  Point facing(Point normal) const { return dot(normal, up) < 0 ? Point{} - normal : normal; }
 
   void fail(const std::string& why, Point at) {
     if (gave_up.empty()) {
@@ -50,12 +56,13 @@ struct FaceGrid {
 /// @brief Points of the loops, from those of the edges.
 FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges);
 
-/// @brief Which charts are taken: near to lengths in space, stretched by more, however far from them.
-enum class Charts : std::uint8_t { near, stretched, any };
+/// @brief Which charts a face is filled in. even: those that are near lengths in space; flat: seen from above, for
+/// faces that are almost plane, whatever their parameters do; any: by whole sides, however far from lengths in space.
+enum class ChartWay : std::uint8_t { even, flat, any };
 
 /// @brief Fill a face in charts of its parameter plane (see chart.hpp). Says in gave_up why it could not.
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, Charts charts,
-                 FaceGrid& grid, Context& context);
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, ChartWay way, FaceGrid& grid,
+                 Context& context);
 
 /// @brief Fill a face by the front on discrete surfaces, over a fine triangulation of it; new points are put on the
 /// face's surface.

@@ -104,7 +104,7 @@ class SmallAngles {
     const Point area = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
     for (const std::uint32_t p : t) {
       const FacePoint& point = grid_.points[p];
-      if (!point.is_pole && !(dot(area, normal_at(point.uv)) > kAgree * length(area))) return false;
+      if (!point.is_pole && !point.is_vague && !(dot(area, normal_at(point.uv)) > kAgree * length(area))) return false;
     }
     return true;
   }
@@ -136,7 +136,7 @@ class SmallAngles {
     links_.fan(q, fan_);
     double before_worst = 1, after_worst = 1, longest = 0;
     for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, distance(at(p), at(ring_.points[k])));
-    const Point normal = surface_.normal(grid_.points[p].uv);
+    const Point normal = normal_at(grid_.points[p].uv);
     for (std::size_t k = 0; k < n; ++k) {
       const std::uint32_t a = ring_.points[k], b = ring_.points[(k + 1) % n];
       before_worst = std::min(before_worst, sine({p, a, b}));
@@ -208,7 +208,8 @@ class SmallAngles {
   Point normal_of(const SurfaceTangents& s, Point2 uv) const {
     const Point n = cross(s.u, s.v);
     const double area2 = squared_length(n);
-    return area2 > kLeastSlope * squared_length(s.u) * squared_length(s.v) ? n / std::sqrt(area2) : surface_.normal(uv);
+    const bool is_told = area2 > kLeastSlope * squared_length(s.u) * squared_length(s.v);
+    return grid_.facing(is_told ? n / std::sqrt(area2) : surface_.normal(uv));
   }
   Point normal_at(Point2 uv) const { return normal_of(surface_.tangents(uv), uv); }
 
@@ -246,7 +247,7 @@ class SmallAngles {
     ring_normal_.clear();
     for (const std::uint32_t q : ring_.points) {
       const FacePoint& point = grid_.points[q];
-      ring_normal_.push_back(point.is_pole ? Point{} : normal_at(point.uv));
+      ring_normal_.push_back(point.is_pole || point.is_vague ? Point{} : normal_at(point.uv));
     }
     double worst = worst_of_ring(moved.at, normal), share = kFirstReach;
     bool is_better = false;

@@ -13,6 +13,7 @@
 #include "brep/bridge.hpp"
 #include "brep/edge_points.hpp"
 #include "brep/face_mesh.hpp"
+#include "brep/vague_normals.hpp"
 #include "delfront/errors.hpp"
 #include "geometry/angles.hpp"
 #include "geometry/surface_findings.hpp"
@@ -25,10 +26,10 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
-constexpr double kFairAngleDeg = 3;          ///< below, another way is tried
-constexpr double kGoodAngleDeg = 20;         ///< stretched charts are good enough with that
+constexpr double kFairAngleDeg = 15;         ///< below, another way is tried
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
+constexpr int kTooOften = 2;                 ///< failures of a face until even charts are not asked any more
 constexpr int kAllOver = 3;                  ///< failures of a face until its sizes are lowered all over it
 
 class BrepGridder {
@@ -154,12 +155,12 @@ class BrepGridder {
     return sizes;
   }
 
-  /// Mapped, also in charts that are stretched where angles are good; else directly in space, or in charts that are far
-  /// from lengths in space where that gives better angles. Along long borders those charts come first.
+  /// In even charts; else on its plane, in charts that are far from lengths in space, or directly in space: the first
+  /// with fair angles, or the best. Along long borders any chart comes before the direct way.
   void grid_face(FaceId f) {
     const BrepFace& face = brep_.faces[f];
     FaceGrid& grid = grids_[f];
-    const FaceGrid border = make_face_border(brep_, face, edges_);
+    FaceGrid border = make_face_border(brep_, face, edges_);
     const std::vector<std::uint64_t> kept_sides = kept_sides_of(border);
     // a surface that folds has no grid that faces as it does; whether one crosses itself is told exactly afterwards
     const bool gives_way = options_.checks_crossings && failures_[f.index()] >= kFolded;
@@ -171,27 +172,28 @@ class BrepGridder {
       check_face_grid(face, most_angle, tolerance_of(face), grid);
       return grid.gave_up.empty();
     };
-    const auto map = [&](Charts charts) { grid_mapped(face, wanted_, options_, charts, grid, context_); };
-    if (options_.method != BrepOptions::Method::direct && fill([&] { map(Charts::near); })) return;
-    if (options_.method == BrepOptions::Method::mapped) return;
-    const std::string why = options_.method == BrepOptions::Method::direct ? "asked for" : grid.gave_up;
-    const auto grid_in_space = [&] {
-      const bool is_done = fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); });
-      grid.why_direct = why;
-      return is_done;
+    const auto map = [&](ChartWay way) {
+      return fill([&] { grid_mapped(face, wanted_, options_, way, grid, context_); });
     };
-    const bool is_free = options_.method == BrepOptions::Method::choose;
-    // where the direct way would take seconds, any chart; where a chart is stretched but good, no support is made
-    const bool is_long = border.points.size() > kMostForDirect;
-    if (is_free && fill([&] { map(is_long ? Charts::any : Charts::stretched); }) &&
-        (is_long || smallest_angle_of(grid) > kGoodAngleDeg))
-      return;
-    if (grid_in_space() && smallest_angle_of(grid) > kFairAngleDeg) return;
-    if (!is_free) return;
-    const FaceGrid direct = grid;
-    if (!fill([&] { map(Charts::any); }) ||
-        (direct.gave_up.empty() && smallest_angle_of(direct) > smallest_angle_of(grid)))
-      grid = direct;
+    const bool is_direct = options_.method == BrepOptions::Method::direct;
+    const bool may_fold = turns_round(*face.surface, border);
+    const bool is_mapped_only = options_.method == BrepOptions::Method::mapped;
+    const bool tries_even = !is_direct && !may_fold && failures_[f.index()] < kTooOften;
+    if ((is_mapped_only || tries_even) && (map(ChartWay::even) || is_mapped_only)) return;
+    const std::string why = is_direct ? "asked for" : may_fold ? "its normals turn round" : grid.gave_up;
+    mark_vague_normals(*face.surface, border);
+    FaceGrid best;
+    double best_angle = -1;
+    const auto keeps = [&](bool is_done) {
+      const double angle = is_done ? smallest_angle_of(grid) : -1;
+      if (angle > best_angle) best = grid, best_angle = angle;
+      return best_angle > kFairAngleDeg;
+    };
+    const bool is_mapped = !is_direct && (keeps(map(ChartWay::flat)) || keeps(map(ChartWay::any)) ||
+                                          (best_angle >= 0 && border.points.size() > kMostForDirect));
+    if (!is_mapped) keeps(fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); }));
+    if (best_angle >= 0) grid = std::move(best);
+    grid.why_direct = why.empty() ? "its grids in even charts failed" : why;
   }
 
   double tolerance_of(const BrepFace& face) const {
@@ -247,6 +249,9 @@ class BrepGridder {
     return findings;
   }
 
+  /// Sizes are lowered where triangles cross; but first bridges are left out, and bends that ask for sides far below
+  /// the sizes are left alone, as surfaces may cross by less than such sides: at lips, and where a tolerance says that
+  /// they meet.
   /// @return whether there was nothing to mend
   bool mend_crossings(Model& model) {
     std::vector<Finding> findings = find_crossings(model);
@@ -254,6 +259,10 @@ class BrepGridder {
       is_bridged_ = false;
       model = assemble();
       findings = find_crossings(model);
+    }
+    if (!findings.empty() && wanted_.forgo_fine_bends()) {
+      has_failed_.assign(grids_.size(), true);
+      return false;
     }
     std::vector<bool> is_done(grids_.size(), false);
     for (const Finding& finding : findings)
@@ -278,6 +287,10 @@ class BrepGridder {
       r.faces[f].why = grid.why_direct;
       r.largest_distance = std::max(r.largest_distance, grid.largest_distance);
       r.largest_normal_angle_deg = std::max(r.largest_normal_angle_deg, grid.largest_angle / kDegree);
+      if (grid.is_folded)
+        context_.log(
+            LogLevel::warning,
+            fmt::format("face '{}' folds over itself in its parameters: it is gridded on its plane", r.faces[f].name));
       if (grid.largest_angle > options_.normal_angle_deg * kDegree)
         context_.log(LogLevel::warning,
                      fmt::format("face '{}' folds: triangles of it differ from its normals by up to {:.0f} degrees; "

@@ -11,6 +11,7 @@
 
 #include "brep/chart_mesh.hpp"
 #include "brep/face_parts.hpp"
+#include "brep/step_metric.hpp"
 #include "delfront/errors.hpp"
 #include "planar/front.hpp"
 #include "planar/kernel.hpp"
@@ -19,14 +20,13 @@
 namespace delfront {
 namespace {
 
-constexpr double kLeastRatio = 1e-16;                   ///< between squared lengths along the axes of a chart
-constexpr double kMostSkew = 1 - 1e-9;                  ///< cosine between what the axes are in space
-constexpr double kMostStretch = 25;                     ///< of lengths over directions, in a chart that is used
-constexpr double kMoreStretch = 100, kMoreChange = 30;  ///< the same where stretched charts will do
-constexpr double kMostChange = 3;  ///< of lengths in space over one wanted side, in a chart that is used
-constexpr double kTryPolar = 2.5;  ///< stretch of a linear chart from where a polar one is tried
-constexpr double kEven = 1.02;     ///< of stretch, and of lengths anywhere over those elsewhere
-constexpr int kSamples = 17;       ///< each way, to look at a chart
+constexpr double kLeastRatio = 1e-16;   ///< between squared lengths along the axes of a chart
+constexpr double kMostSkew = 1 - 1e-9;  ///< cosine between what the axes are in space
+constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
+constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
+constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
+constexpr double kEven = 1.02;          ///< of stretch, and of lengths anywhere over those elsewhere
+constexpr int kSamples = 17;            ///< each way, to look at a chart
 constexpr std::size_t kMostOfLoop = 200;
 constexpr double kSamePlace = 1e-9;  ///< of the extent: copies of a seam's points in a polar chart
 constexpr int kPoleDirections = 8;
@@ -172,7 +172,7 @@ ChartLook look_at(const Chart& chart, std::span<const Point2> places, const Para
 
 /// Linear, or polar round the part's pole, or round one that it has no part in where that is better.
 std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
-                                  const WantedSize& size, Charts charts, FaceGrid& grid) {
+                                  const WantedSize& size, bool takes_any, FaceGrid& grid) {
   std::optional<Chart> best;
   best.emplace(surface, box, part.pole);
   const std::vector<Point2> places = places_to_look_at(grid, part, box);
@@ -192,14 +192,33 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
       best.emplace(surface, box, pole);
     }
   }
-  if (charts == Charts::any) return best;
-  if (look.stretch > (charts == Charts::near ? kMostStretch : kMoreStretch))
+  if (takes_any) return best;
+  if (look.stretch > kMostStretch)
     grid.fail(fmt::format("the mapping stretches lengths by {:.3g} in one direction over another", look.stretch),
               look.at);
-  else if (look.change > (charts == Charts::near ? kMostChange : kMoreChange))
+  else if (look.change > kMostChange)
     grid.fail(fmt::format("lengths in the mapping change by {:.3g} over one side", look.change), look.at);
   if (!grid.gave_up.empty()) return std::nullopt;
   return best;
+}
+
+/// On the plane of the border's area.
+std::optional<Chart> flat_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
+                                FaceGrid& grid) {
+  Point area;
+  const Point first = grid.points[part.loops[0][0]].at;
+  for (const auto& loop : part.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      area = area + cross(grid.points[loop[i]].at - first, grid.points[loop[(i + 1) % loop.size()]].at - first);
+  if (length(area) > 0) {
+    const auto plane = std::make_shared<const PlaneMap>(surface, box, area / length(area));
+    if (plane->is_flat()) {
+      grid.up = area / length(area);
+      return Chart(surface, plane);
+    }
+  }
+  grid.fail("it is not flat", first);
+  return std::nullopt;
 }
 
 /// A part in its chart, before and after the front.
@@ -212,7 +231,9 @@ class ChartedPart {
         add_segment(chart_point(loop[i]), chart_point(loop[(i + 1) % loop.size()]));
   }
 
-  void fill(const WantedSize& size, bool is_lowered, const BrepOptions& options, Context& context) {
+  /// @param by_steps  the metric is that of whole sides
+  void fill(const WantedSize& size, bool is_lowered, bool by_steps, const ParameterBox& box, const BrepOptions& options,
+            Context& context) {
     if (!has_area()) return grid_.fail("its border is a line in the parameter plane", grid_.points[origin_[0]].at);
     PlanarGrid plane;
     plane.complex.point.assign(domain_.points.begin(), domain_.points.end());
@@ -228,11 +249,16 @@ class ChartedPart {
     Box extent;
     for (const Point2 p : domain_.points) extent.add(Point{p.x, p.y, 0});
     const ChartMetric metric(chart_, size, is_lowered, 1e-7 * extent.diagonal());
-    fill_by_front(plane, metric, quiet);
+    if (by_steps)
+      fill_by_front(plane, StepMetric(metric, chart_, box), quiet);
+    else
+      fill_by_front(plane, metric, quiet);
     plane.complex.index_vertices();
     std::vector<Point> border;
     for (const std::uint32_t p : origin_) border.push_back(grid_.points[p].at);
     ChartMesh mesh(plane.complex, chart_, std::move(border));
+    for (VertexIndex v = 0; v < origin_.size(); ++v)
+      if (grid_.points[origin_[v]].is_vague) mesh.forget_normal(v);
     mesh.improve(options.smoothing_passes, context);
     take(plane.complex, mesh.at());
   }
@@ -309,15 +335,17 @@ class ChartedPart {
 
 }  // namespace
 
-void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, Charts charts,
-                 FaceGrid& grid, Context& context) {
+void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, ChartWay way, FaceGrid& grid,
+                 Context& context) {
   try {
     for (const FacePart& part : find_parts(face, size, grid)) {
       const ParameterBox box = box_of(grid, part);
-      const std::optional<Chart> chart = choose_chart(*face.surface, part, box, size, charts, grid);
+      const std::optional<Chart> chart = way == ChartWay::flat
+                                             ? flat_chart(*face.surface, part, box, grid)
+                                             : choose_chart(*face.surface, part, box, size, way == ChartWay::any, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
-      charted.fill(size, size.is_lowered_on(*face.surface, box), options, context);
+      charted.fill(size, size.is_lowered_on(*face.surface, box), way == ChartWay::any, box, options, context);
       if (!grid.gave_up.empty()) return;
     }
   } catch (const InputError& e) {

@@ -4,9 +4,10 @@
 namespace delfront {
 namespace {
 
-constexpr int kSamples = 24;            ///< each way
-constexpr double kFloorShare = 1e-3;    ///< of the diagonal
-constexpr double kMostLowering = 0.05;  ///< of the least size that is asked for, where that gives less
+constexpr int kSamples = 24;             ///< each way
+constexpr double kFloorShare = 1e-3;     ///< of the diagonal
+constexpr double kMostLowering = 0.05;   ///< of the least size that is asked for, where that gives less
+constexpr double kCoarseLowering = 0.5;  ///< the same, where grids with that cross themselves
 constexpr double kTipReach = 0.2;     ///< of a face's extent from its tip: sizes there are not lowered below about that
 constexpr double kSmoothPole = 0.99;  ///< least cosine between normals round a pole that is no tip
 
@@ -37,7 +38,11 @@ void WantedSize::look_at(const Brep& brep) {
   std::vector<double> asked(at.size());
   asked_.sizes(at, asked);
   double floor = kFloorShare * box.diagonal();
-  for (const double h : asked) floor = std::min(floor, kMostLowering * h);
+  coarse_least_ = floor;
+  for (const double h : asked) {
+    floor = std::min(floor, kMostLowering * h);
+    coarse_least_ = std::min(coarse_least_, kCoarseLowering * h);
+  }
   least_ = std::max(least_, floor);
   find_tips(brep);
 }

@@ -23,6 +23,15 @@ class WantedSize {
   /// what is sharper than that by far counts as a crease.
   void look_at(const Brep& brep);
 
+  /// @brief From now on bends ask for no less than half of the least size asked for: surfaces that cross each other by
+  /// little are seen to do so where sides are as short as that.
+  /// @return whether they did ask for less
+  bool forgo_fine_bends() {
+    const bool is_new = least_ < coarse_least_;
+    least_ = std::max(least_, coarse_least_);
+    return is_new;
+  }
+
   /// @brief What is left of an asked size where so much is bent.
   double lowered(double asked, double curvature, Point at) const {
     if (!(asked * curvature > most_turn_)) return asked;
@@ -46,7 +55,8 @@ class WantedSize {
   const SizeField& asked_;
   double most_turn_;
   std::vector<Tip> tips_;
-  double least_;  ///< no bend asks for less
+  double least_;             ///< no bend asks for less
+  double coarse_least_ = 0;  ///< after forgo_fine_bends()
 };
 
 }  // namespace delfront

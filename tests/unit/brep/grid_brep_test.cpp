@@ -83,7 +83,7 @@ TEST(GridBrep, HalfOfAPatchUnderItsDiagonal) {
   }
 }
 
-TEST(GridBrep, AMappingThatIsTooBadIsGriddedDirectly) {
+TEST(GridBrep, AMappingThatIsTooBadIsGriddedInAnotherWay) {
   // a triangle as a patch of four sides: at the corner amid the base u and v run against each other
   std::array<std::array<Point, 4>, 4> b;
   const double squares[] = {0, 0, 1.0 / 3, 1};  // Bezier points of t^2
@@ -94,14 +94,19 @@ TEST(GridBrep, AMappingThatIsTooBadIsGriddedDirectly) {
     }
   const Brep brep = make_bicubic(b);
   const LinearSize size(0.05, 1, {}, 0, 1);
-  const Gridded made = grid(brep, size);
-  EXPECT_FALSE(made.report.faces[0].is_mapped);
-  expect_mentions(made.report.faces[0].why, {"stretches"});
-  EXPECT_EQ(topology_of(made.model).euler, 1);
-  EXPECT_LT(farthest_from_entity(made, brep), 1e-12);
-  EXPECT_GT(worst_agreement(made, brep), 0.9);
-  EXPECT_GT(smallest_angle(made.model), 20);
-  EXPECT_GE(share_of_right_lengths(made.model, size), 0.9);
+  for (const auto method : {BrepOptions::Method::choose, BrepOptions::Method::direct}) {
+    BrepOptions options;
+    options.method = method;
+    const Gridded made = grid(brep, size, options);
+    const bool is_direct = method == BrepOptions::Method::direct;
+    EXPECT_EQ(made.report.faces[0].is_mapped, !is_direct);
+    expect_mentions(made.report.faces[0].why, {is_direct ? "asked for" : "stretches"});
+    EXPECT_EQ(topology_of(made.model).euler, 1);
+    EXPECT_LT(farthest_from_entity(made, brep), 1e-12);
+    EXPECT_GT(worst_agreement(made, brep), 0.9);
+    EXPECT_GT(smallest_angle(made.model), 20);
+    EXPECT_GE(share_of_right_lengths(made.model, size), 0.9);
+  }
 }
 
 /// Both in one; the second's ids follow the first's.

@@ -25,10 +25,12 @@ struct Expected {
   bool is_closed;  ///< bounds a volume
 };
 constexpr Expected kFiles[] = {
-    {"Pump_TopCover.brep", 1, true}, {"as1-oc-214.stp", 18, true},   {"cube-in.step", 1, true},
-    {"featuretype.STEP", 1, true},   {"geom_oneram6.IGS", 0, true},  {"hammer.iges", 0, true},
-    {"linkrods.step", 1, true},      {"mesh_T106_V3.step", 0, true}, {"onera-m6-sharp-te.egads", 1, true},
-    {"wing_fuselage.step", 2, true},
+    {"A319.brep", 0, true},         {"Pump_TopCover.brep", 1, true},
+    {"as1-oc-214.stp", 18, true},   {"cube-in.step", 1, true},
+    {"featuretype.STEP", 1, true},  {"geom_oneram6.IGS", 0, true},
+    {"hammer.iges", 0, true},       {"linkrods.step", 1, true},
+    {"mesh_T106_V3.step", 0, true}, {"onera-m6-sharp-te.egads", 1, true},
+    {"tigl_nacelle.stp", 0, false}, {"wing_fuselage.step", 2, true},
 };
 
 double tolerance_of(const Brep& brep, const VertexEntity& v) {
