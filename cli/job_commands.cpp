@@ -266,6 +266,19 @@ class JobCommand : public Command {
         with_commas(a.triangles), a.min_angle_deg, a.mean_min_angle_deg, a.deviation.value, a.mean_deviation,
         100 * a.share_of_right_sides, made.rounds.rounds.size(), made.rounds.rounds.size() == 1 ? "" : "s");
     if (!made.rounds.stopped.empty()) fmt::print("               {}\n", made.rounds.stopped);
+    if (!made.rounds.grid.bridges.empty()) print_bridges(made.rounds.grid);
+  }
+
+  static void print_bridges(const BrepGridReport& grid) {
+    const auto widest = std::max_element(grid.bridges.begin(), grid.bridges.end(),
+                                         [](const BrepBridge& a, const BrepBridge& b) { return a.width < b.width; });
+    const auto faces = std::count_if(grid.faces.begin(), grid.faces.end(),
+                                     [](const BrepFaceReport& face) { return face.triangles == 0; });
+    fmt::print(
+        "bridged        {} place{} narrower than hmin ({} whole face{}), the widest, {:.3g}, at ({:.6g}, {:.6g}, "
+        "{:.6g}); surface.bridge = false keeps them\n",
+        grid.bridges.size(), grid.bridges.size() == 1 ? "" : "s", faces, faces == 1 ? "" : "s", widest->width,
+        widest->at.x, widest->at.y, widest->at.z);
   }
 
   static void print_summary(const JobResult& result, const Options& options) {

@@ -155,8 +155,10 @@ struct BrepOptions {
   int smoothing_passes = 6;
   bool checks_crossings = true;   ///< the whole surface, exactly
   bool keeps_parameters = false;  ///< BrepGridReport::corner_uv is filled
-  double least_size = 0;          ///< of sides that are made shorter for their turn
-  int most_rounds = 8;            ///< of gridding with lower sizes where a face or the whole failed
+  double least_size = 0;          ///< of sides that are made shorter for their turn, or beside short edges
+  /// @brief What is narrower is gridded across: tiny edges, sliver faces, borders that touch; 0: nothing is.
+  double bridge_below = 0;
+  int most_rounds = 8;  ///< of gridding with lower sizes where a face or the whole failed
 };
 
 /// @brief One face's grid.
@@ -168,6 +170,12 @@ struct BrepFaceReport {
   double min_angle_deg = 180;
 };
 
+/// @brief A place that was gridded across, as too narrow for its triangles.
+struct BrepBridge {
+  Point at;
+  double width = 0;  ///< how far the geometry is moved there
+};
+
 /// @brief What grid_brep() made.
 struct BrepGridReport {
   std::size_t triangles = 0, points = 0;
@@ -177,7 +185,8 @@ struct BrepGridReport {
   double largest_normal_angle_deg = 0;  ///< between a triangle and its surface at one of its corners
   std::size_t rounds = 0;               ///< of gridding; sizes are lowered where the one before failed
   std::size_t sizes_lowered = 0;
-  std::vector<BrepFaceReport> faces;
+  std::vector<BrepFaceReport> faces;  ///< one of no triangles is bridged
+  std::vector<BrepBridge> bridges;
   /// One a point of the model: the corner, edge or face of the Brep that it lies on; t is in u for edges.
   std::vector<VertexEntity> entity;
   /// One a triangle, where asked for: the parameters of its corners in the plane of its face. Those of a pole say

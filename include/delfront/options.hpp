@@ -193,6 +193,7 @@ struct SurfaceOptions {
   /// keep: triangle for triangle; front, delaunay: gridded anew to the sizes asked for. Of smooth geometry keep and
   /// mapped: through its parameters; front: in space
   std::string method = "keep";
+  bool bridge = true;              ///< smooth geometry: across what is narrower than hmin (BrepOptions::bridge_below)
   std::vector<PatchId> kept = {};  ///< patches that keep their triangles all the same; set by the run
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/angles.hpp"
 #include "surface/linked_triangles.hpp"
 
 namespace delfront {
@@ -20,14 +21,6 @@ constexpr double kFirstReach = 0.25;  ///< of the mean side: a step of lifting a
 constexpr double kLeastSlope = 1e-6;  ///< squared sine between tangents from where steps go by them
 constexpr double kMostLonger = 1.3;   ///< sides that a collapse makes, of the longest there
 constexpr std::uint32_t kNone = LinkedTriangles::kNone;
-
-double squared_sine(Point a, Point b, Point c) {
-  const Point u = b - a, v = c - b, w = a - c;
-  const double u2 = squared_length(u), v2 = squared_length(v), w2 = squared_length(w);
-  const double shortest = std::min({u2, v2, w2});
-  const double product = shortest == u2 ? v2 * w2 : shortest == v2 ? u2 * w2 : u2 * v2;
-  return product > 0 ? squared_length(cross(u, v)) / product : 0;
-}
 
 /// The triangles round small angles, linked; those at their rim are only looked at.
 class SmallAngles {
@@ -54,7 +47,9 @@ class SmallAngles {
 
  private:
   Point at(std::uint32_t p) const { return grid_.points[p].at; }
-  double sine(const std::array<std::uint32_t, 3>& t) const { return squared_sine(at(t[0]), at(t[1]), at(t[2])); }
+  double sine(const std::array<std::uint32_t, 3>& t) const {
+    return smallest_squared_sine(at(t[0]), at(t[1]), at(t[2]));
+  }
 
   void drop_collapsed() {
     is_collapsed_ = false;
@@ -205,7 +200,7 @@ class SmallAngles {
       if (!(dot(n, normal) > least)) return 0;
       for (const Point there : {ring_normal_[i], ring_normal_[(i + 1) % ring_.points.size()]})
         if (!(dot(n, there) > least) && there != Point{}) return 0;
-      worst = std::min(worst, squared_sine(place, a, b));
+      worst = std::min(worst, smallest_squared_sine(place, a, b));
     }
     return worst;
   }
@@ -221,8 +216,8 @@ class SmallAngles {
   double worst_angle_round(Point place) const {
     double worst = 1;
     for (std::size_t i = 0; i < ring_.points.size(); ++i)
-      worst =
-          std::min(worst, squared_sine(place, at(ring_.points[i]), at(ring_.points[(i + 1) % ring_.points.size()])));
+      worst = std::min(
+          worst, smallest_squared_sine(place, at(ring_.points[i]), at(ring_.points[(i + 1) % ring_.points.size()])));
     return worst;
   }
 

@@ -10,6 +10,7 @@
 
 #include "base/parallel.hpp"
 #include "brep/assemble_brep.hpp"
+#include "brep/bridge.hpp"
 #include "brep/edge_points.hpp"
 #include "brep/face_mesh.hpp"
 #include "delfront/errors.hpp"
@@ -52,8 +53,7 @@ class BrepGridder {
       context_.progress("surface", report_.rounds - 1, 0, "rounds");
       if (!grid_faces()) continue;
       const StageTimer timer(context_, "crossings");
-      Model model = assemble_brep(brep_, edges_, grids_, num_vertices_, report_.entity,
-                                  options_.keeps_parameters ? &report_.corner_uv : nullptr);
+      Model model = assemble();
       if (options_.checks_crossings && !mend_crossings(model)) continue;
       fill_report(model);
       return model;
@@ -108,6 +108,19 @@ class BrepGridder {
     return true;
   }
 
+  Model assemble() {
+    BrepGrid grid;
+    const bool bridges = options_.bridge_below > 0 && is_bridged_;
+    const bool keeps_parameters = options_.keeps_parameters || bridges;
+    grid.model =
+        assemble_brep(brep_, edges_, grids_, num_vertices_, grid.entity, keeps_parameters ? &grid.corner_uv : nullptr);
+    report_.bridges.clear();
+    if (bridges) report_.bridges = bridge_narrow_parts(brep_, options_.bridge_below, grid, context_);
+    report_.entity = std::move(grid.entity);
+    report_.corner_uv = options_.keeps_parameters ? std::move(grid.corner_uv) : std::vector<std::array<Point2, 3>>{};
+    return std::move(grid.model);
+  }
+
   /// F3, twice: from sides that are shorter than asked for, sizes grow.
   void divide() {
     working_.lower(lowered_, context_);
@@ -136,7 +149,7 @@ class BrepGridder {
     for (std::size_t i = 0; i < at.size(); ++i) {
       if (!(side[i] < kShortShare * asked[i])) continue;
       sizes.points.push_back(at[i]);
-      sizes.size.push_back(side[i]);
+      sizes.size.push_back(std::max(side[i], options_.least_size));
     }
     return sizes;
   }
@@ -224,25 +237,33 @@ class BrepGridder {
     return is_whole;
   }
 
-  /// @return whether triangles meet in common corners and sides alone
-  bool mend_crossings(const Model& model) {
+  /// What is wrong with the surface as a whole: triangles that do not meet in common corners and sides alone.
+  std::vector<Finding> find_crossings(const Model& model) {
     const Surface surface(model);
     std::vector<Finding> findings;
     find_bad_triangles(surface, findings);
     find_intersections(surface, findings, context_);
-    bool is_sound = true;
+    std::erase_if(findings, [](const Finding& finding) { return finding.severity != Severity::error; });
+    return findings;
+  }
+
+  /// @return whether there was nothing to mend
+  bool mend_crossings(Model& model) {
+    std::vector<Finding> findings = find_crossings(model);
+    if (!findings.empty() && !report_.bridges.empty()) {
+      is_bridged_ = false;
+      model = assemble();
+      findings = find_crossings(model);
+    }
     std::vector<bool> is_done(grids_.size(), false);
-    for (const Finding& finding : findings) {
-      if (finding.severity != Severity::error) continue;
-      is_sound = false;
+    for (const Finding& finding : findings)
       for (const Place& place : finding.places)
         for (const std::uint32_t f : place.ids) {
           if (f >= is_done.size() || is_done[f]) continue;
           is_done[f] = true;
           fail(FaceId(std::size_t(f)), finding.kind, place.at);
         }
-    }
-    return is_sound;
+    return findings.empty();
   }
 
   void fill_report(const Model& m) {
@@ -290,6 +311,7 @@ class BrepGridder {
   std::vector<bool> has_failed_;            ///< by face: in the last round
   std::vector<std::vector<double>> sizes_;  ///< by face: at its points in the last round; empty: it failed
   std::size_t num_vertices_ = 0;
+  bool is_bridged_ = true;  ///< where that is asked for; no longer where bridges made triangles cross
   std::string why_;
   Point why_at_;
 };

@@ -70,8 +70,9 @@ BrepSizes geometry_wish(const Options& options, double extent, bool has_field) {
   return wish;
 }
 
-BrepOptions gridding_options(const Options& options) {
+BrepOptions gridding_options(const Options& options, double extent) {
   BrepOptions how;
+  if (options.surface.bridge) how.bridge_below = geometry_wish(options, extent, false).hmin;
   if (options.surface.method == "front") how.method = BrepOptions::Method::direct;
   return how;
 }
@@ -137,12 +138,12 @@ BrepGoals geometry_goals(const Options& options, double extent) {
 
 Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
                    BrepGridReport& report) {
-  return surface_mesh(grid_brep(brep, size, gridding_options(options), report, context));
+  return surface_mesh(grid_brep(brep, size, gridding_options(options, measure_extent(brep)), report, context));
 }
 
 Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
                             Context& context, BrepRounds& report) {
-  return surface_mesh(grid_brep_to_goals(input.brep, std::move(size), gridding_options(options),
+  return surface_mesh(grid_brep_to_goals(input.brep, std::move(size), gridding_options(options, input.look.extent),
                                          geometry_goals(options, input.look.extent), report, context));
 }
 

@@ -187,6 +187,10 @@ std::vector<OptionRow> build_table() {
       "the surface's triangles: keep the given ones, or make new ones of the sizes asked for, by a front or by a "
       "front and Delaunay flips; smooth geometry: mapped (also keep), through its parameters, or front, in space",
       [](auto& o) -> auto& { return o.surface.method; }, {"keep", "front", "delaunay", "mapped"}));
+  add(boolean_row(
+      "surface.bridge",
+      "smooth geometry: grid across tiny edges, sliver faces and borders that touch, where they are narrower than hmin",
+      [](auto& o) -> auto& { return o.surface.bridge; }));
   add(text_row("volume.method", "--volume-method", "front-delaunay|front|delaunay|none",
                "how the volume is gridded: by the points of a front, connected by Delaunay; by an advancing front; by "
                "Delaunay with points at the centres of spheres; none: the surface only",

@@ -227,7 +227,16 @@ Json to_json(const GeometryGrid& g) {
   Json rounds = Json::array();
   for (const BrepAccuracy& a : g.rounds.rounds) rounds.push_back(to_json(a));
   for (std::size_t i = 0; i + 1 < rounds.size(); ++i) rounds[i].erase("patches");
-  return {{"file", g.file}, {"stopped", g.rounds.stopped}, {"rounds", rounds}};
+  Json bridges = Json::array(), faces = Json::array();
+  for (const BrepBridge& bridge : g.rounds.grid.bridges)
+    bridges.push_back({{"at", to_json(bridge.at)}, {"width", number(bridge.width)}});
+  for (const BrepFaceReport& face : g.rounds.grid.faces)
+    if (face.triangles == 0) faces.push_back(face.name);
+  return {{"file", g.file},
+          {"stopped", g.rounds.stopped},
+          {"rounds", rounds},
+          {"bridges", bridges},
+          {"faces_bridged", faces}};
 }
 
 Json geometry_json(const std::vector<GeometryGrid>& grids) {
