@@ -27,7 +27,9 @@ void FrontNeighbours::gather(const SideGrid& grid, const FrontSide& side, const 
                up = frame.from_frame({0, 0.5 * half}) - frame.middle;
   const Point2 extent = {std::fabs(right.x) + std::fabs(up.x), std::fabs(right.y) + std::fabs(up.y)};
   const Point2 middle = frame.middle + up;
-  const double low_y = kRoundoffOfFrame * (std::fabs(frame.yx) * extent.x + std::fabs(frame.yy) * extent.y) * 4;
+  // the middle is rounded as well: by a part of its own size, not of the extent
+  const Point2 size = {extent.x + std::fabs(middle.x), extent.y + std::fabs(middle.y)};
+  const double low_y = kRoundoffOfFrame * (std::fabs(frame.yx) * size.x + std::fabs(frame.yy) * size.y) * 4;
   const double reach2 = reach * reach;
   grid.for_each_near(middle - extent, middle + extent, [&](const FrontSide& s) {
     const Point2 at_a = frame.to_frame(s.a), at_b = frame.to_frame(s.b);

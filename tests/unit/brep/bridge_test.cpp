@@ -164,7 +164,7 @@ TEST(Bridge, RandomPrismsStaySolid) {
     const Brep brep = make_prism(polygon, 0.5);
     const Gridded made = grid(brep, UniformSize(0.15), bridging(0.02));
     expect_solid(brep, made);
-    EXPECT_GT(made.report.min_angle_deg, 0.7 * 0.02 / (1.5 * 0.15) * 180 / kPi);  // what is 0.02 wide stays
+    EXPECT_GT(made.report.min_angle_deg, 0.7 * 0.02 / (1.6 * 0.15) * 180 / kPi);  // what is 0.02 wide stays
     EXPECT_NEAR(volume_of(made.model), 0.5 * area_of(polygon), 0.03);
   }
 }

@@ -160,6 +160,19 @@ TEST(FillByFront, F17_thin_slots_and_sharp_wedges) {
   }
 }
 
+/// Its middle corner lies 1e-21 from the opposite side, which the frame of another side rounds away.
+TEST(FillByFront, F17_a_needle_as_thin_as_rounding_does_not_leak) {
+  PlanarDomain domain;
+  add_loop(domain,
+           {{0.98432620614767075, 0.32745908200740814},
+            {0.98429315238441173, 0.32755008811913183},
+            {0.98431692138271032, 0.32748464552193729}},
+           "needle");
+  const Filled filled = fill_domain(domain, nullptr);
+  EXPECT_EQ(filled.num_triangles, 1u);
+  EXPECT_EQ(filled.report.points, 0u);
+}
+
 TEST(FillByFront, F17_nothing_but_given_points_in_a_sliver) {
   PlanarDomain domain;
   add_loop(domain, {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1e-9}, {2, 1e-9}, {1, 1e-9}, {0, 1e-9}}, "sliver");
