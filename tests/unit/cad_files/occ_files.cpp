@@ -36,6 +36,7 @@
 #include <STEPCAFControl_Writer.hxx>
 #include <STEPControl_Reader.hxx>
 #include <STEPControl_Writer.hxx>
+#include <ShapeAnalysis_Surface.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
@@ -197,6 +198,9 @@ double distance_to(const TopoDS_Shape& shape, Point p) {
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More() && least > 0; face.Next()) {
     GeomAPI_ProjectPointOnSurf on(gp_Pnt(p.x, p.y, p.z), BRep_Tool::Surface(TopoDS::Face(face.Current())));
     if (on.NbPoints() > 0) least = std::min(least, on.LowerDistance());
+    ShapeAnalysis_Surface surface(BRep_Tool::Surface(TopoDS::Face(face.Current())));  // so does that, near poles
+    const gp_Pnt2d uv = surface.ValueOfUV(gp_Pnt(p.x, p.y, p.z), 1e-12);
+    least = std::min(least, surface.Value(uv).Distance(gp_Pnt(p.x, p.y, p.z)));
   }
   return least;
 }

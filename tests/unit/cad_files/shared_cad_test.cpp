@@ -54,7 +54,8 @@ TEST_P(SharedCad, D1_S11_has_a_valid_grid_on_the_geometry) {
   const Options usual;
   BrepGridReport report;
   const auto size = geometry_sizes(brep, look_at_brep(brep, context), usual, nullptr, context);
-  const Model model = grid_brep(brep, *size, {}, report, context);
+  const double hmin = accuracy_numbers("").hmin_share * measure_extent(brep);
+  const Model model = grid_brep(brep, *size, {.least_size = hmin, .bridge_below = hmin}, report, context);
   const SurfaceReport facts = check_surface(model, context);
   EXPECT_EQ(facts.can_bound_volume, expected.is_closed);
   for (const Finding& finding : facts.findings)
@@ -67,7 +68,10 @@ TEST_P(SharedCad, D1_S11_has_a_valid_grid_on_the_geometry) {
   for (std::size_t i = 0; i < model.points.size(); i += step) {
     const Point p = model.points[VertexId(i)];
     const double allowed = std::max(1e-7 * diagonal, tolerance_of(brep, report.entity[i]));
-    EXPECT_LE(occ::distance_to(shape, p), allowed) << "point " << i << " of dimension " << report.entity[i].dimension;
+    EXPECT_LE(occ::distance_to(shape, p), allowed)
+        << "point " << i << " of dimension " << int(report.entity[i].dimension) << ", entity " << report.entity[i].id
+        << ", at " << p.x << " " << p.y << " " << p.z << ", parameters " << report.entity[i].u << " "
+        << report.entity[i].v;
   }
 }
 

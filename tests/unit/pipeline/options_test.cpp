@@ -311,6 +311,7 @@ Options unusual_options() {
       {"planar.method", "front"},
       {"planar.min_angle", "25"},
       {"surface.method", "front"},
+      {"surface.bridge", "false"},
       {"volume.method", "none"},
       {"volume.core", "false"},
       {"improve.enabled", "false"},
