@@ -21,13 +21,13 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 HEAD = """<!-- made by scripts/cad_table.py -->
 # CAD files, on the shared geometry
 
-`mesh FILE` with no sizes given. Deviation: the largest distance of a triangle's middle from its surface, in per cent of the
-diagonal. Seconds are wall time of reading, both griddings of the surface (the first to look at, the second to the sizes that
-follow) and all checks. Volume: tetrahedra, and what `check_mesh.py` says of them; open surfaces and files with a far field
-of their own only are as they are.
+`mesh FILE` with no sizes given. Rounds of gridding until the goals are met; bridges: places narrower than hmin that are gridded
+across. Deviation: the largest distance of the grid from its surface, in per cent of the diagonal. Seconds are wall time of
+reading, all gridding of the surface and all checks. Volumes by `--volume-method front-delaunay` and `front`: tetrahedra, the smallest
+dihedral angle, and what `check_mesh.py` says of them; open surfaces have none.
 
-| file | unit | faces | repairs | triangles | smallest angle | below 25 | deviation, % | seconds | tetrahedra | smallest dihedral | verdict |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |
+| file | unit | faces | repairs | triangles | rounds | bridges | smallest angle | below 25 | deviation, % | seconds | tetrahedra | smallest dihedral | front | smallest dihedral | verdict |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |
 """
 
 
@@ -72,7 +72,7 @@ def judge(path, options, folder):
         os.remove(facts)
     code, said, _ = run([options.delfront, "info", path, "--json", facts], options.timeout)
     if not os.path.exists(facts):
-        return [""] * 10, f"info: exit {code}: {said}"
+        return [""] * 14, f"info: exit {code}: {said}"
     looked = read_json(facts)
     cad = looked["geometry"]["cad"]
     cells = [cad["unit"] or "-", str(len(looked["geometry"]["faces"])), str(len(cad["repairs"]))]
@@ -80,23 +80,36 @@ def judge(path, options, folder):
     code, said, seconds = run([options.delfront, "mesh", path, "-o", surface, "--stop-after", "surface", "--report",
                                report], options.timeout)
     if code != 0:
-        return cells + [""] * 7, f"surface: exit {code}: {said}"
+        return cells + [""] * 11, f"surface: exit {code}: {said}"
     made = read_json(report)
-    smooth = looked["geometry"]["grid"]  # with no sizes given both are the same
-    cells += [f"{smooth['triangles']:,}", f"{smooth['min_angle']:.1f}", str(smooth["below_25"]),
-              f"{100 * smooth['largest_distance'] / made['scale']['diagonal']:.2g}", f"{seconds:.1f}"]
+    smooth = made["geometry"][0]
+    last = smooth["rounds"][-1]
+    cells += [f"{last['triangles']:,}", str(len(smooth["rounds"])), str(len(smooth["bridges"])),
+              f"{last['min_angle']:.1f}", str(sum(last["angles"]["counts"][:5])),
+              f"{100 * last['deviation']['value'] / made['scale']['diagonal']:.2g}", f"{seconds:.1f}"]
     if not made["surface"]["can_bound_volume"] or options.surface:
-        return cells + ["", ""], "" if options.surface else ("" if cad["free_edges"] else "cannot bound a volume")
-    grid = os.path.join(folder, "v.vtu")
-    code, said, seconds = run([options.delfront, "mesh", path, "-o", grid, "--report", report], options.timeout)
+        return cells + [""] * 4, "" if options.surface or cad["free_edges"] else "cannot bound a volume"
+    for method in ("front-delaunay", "front"):
+        more, problem = fill(path, method, options, folder)
+        cells += more
+        if problem:
+            return cells + [""] * (14 - len(cells)), problem
+    return cells, ""
+
+
+def fill(path, method, options, folder):
+    """Cells of a volume grid by a method, and what was wrong."""
+    grid, report = os.path.join(folder, "v.vtu"), os.path.join(folder, "report.json")
+    code, said, _ = run([options.delfront, "mesh", path, "-o", grid, "--report", report, "--volume-method", method],
+                        options.timeout)
     if code != 0:
-        return cells + ["", ""], f"volume: exit {code}: {said}"
+        return ["", ""], f"{method}: exit {code}: {said}"
     made = read_json(report)
-    cells += [f"{made['quality']['num_cells']:,}", f"{made['quality']['measures']['min_dihedral']['min']:.1f}"]
     done = subprocess.run([options.python, options.checker, grid, "--allow-nonmanifold-edges"], capture_output=True,
                           text=True, check=False)
     wrong = [line for line in (done.stdout + done.stderr).splitlines() if "rror" in line]
-    return cells, "" if done.returncode == 0 else "checker: " + (wrong[0] if wrong else "refused")
+    cells = [f"{made['quality']['num_cells']:,}", f"{made['quality']['measures']['min_dihedral']['min']:.1f}"]
+    return cells, "" if done.returncode == 0 else f"{method}, checker: " + (wrong[0] if wrong else "refused")
 
 
 def main():
