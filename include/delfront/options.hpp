@@ -52,10 +52,12 @@ struct DomainOptions {
 };
 
 struct BoundaryOptions {
-  std::string name;         ///< table key: boundaries.<name>
-  std::string select;       ///< name pattern with * and ?; empty: the patch of that name
-  std::string kind;         ///< wall patch inlet outlet farfield symmetry empty wedge cyclic interface
-  std::string set_at = {};  ///< as Options::set_at
+  std::string name;                       ///< table key: boundaries.<name>
+  std::string select;                     ///< name pattern with * and ?; empty: the patch of that name
+  std::string kind;                       ///< wall patch inlet outlet farfield symmetry empty wedge cyclic interface
+  std::string set_at = {};                ///< as Options::set_at
+  std::vector<std::uint32_t> faces = {};  ///< of smooth geometry, from 1 as `info` counts them
+  std::optional<Point> normal = {};       ///< faces of smooth geometry that look this way all over, within 5 degrees
 };
 
 /// @brief Sizes by formulas in x, y, z, pi, e and distance("name") (S2); empty: not asked for.

@@ -134,8 +134,9 @@ void warn_of_coarse_surface(const Model& model, const SizeOptions& options, cons
   if (found.count == 0) return;
   context.warn(fmt::format(
       "{} edges of the surface are longer than the sizes asked for there, the worst {:g} where {:g} is asked "
-      "for (at {:g} {:g} {:g}): the surface is kept as given, cells along it may be flat; --surface-method "
-      "front grids the surface anew, to the sizes asked for",
+      "for (at {:g} {:g} {:g}): cells along it may be flat; of given facets --surface-method front makes new "
+      "triangles, "
+      "to the sizes asked for",
       found.count, found.length, found.size, found.at.x, found.at.y, found.at.z));
 }
 

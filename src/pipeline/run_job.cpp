@@ -16,6 +16,7 @@
 #include "delfront/job.hpp"
 #include "geometry/enclose.hpp"
 #include "pipeline/boundaries.hpp"
+#include "pipeline/face_selectors.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "pipeline/job_checks.hpp"
 #include "pipeline/job_leavings.hpp"
@@ -75,6 +76,7 @@ void read_smooth(Run& run, const std::string& path) {
   {
     const StageTimer timer(run.context, "read");
     smooth.brep = read_brep(path, run.context, cad);
+    name_selected_faces(run.options.boundaries, path, smooth.brep);
   }
   Options& options = run.options;  // several files might differ in their units
   if (options.input.units == "auto" && options.input.files.size() == 1 && metres_per_unit(cad.unit) > 0)

@@ -57,6 +57,30 @@ class SmoothGeometry(case.Case):
         self.assertEqual(geometry["faces"][6]["kind"], "wall")
         self.assertIn("closed", result.stdout)
 
+    def test_faces_are_selected_by_number_and_normal(self):
+        self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
+        job = """[input]
+files = ["room.geom.toml"]
+[boundaries.floor]
+select = { normal = [0, 0, -2] }
+kind = "symmetry"
+[boundaries.ends]
+select = { id = [1, 2] }
+[output]
+files = ["room.vtu"]
+report = "room.json"
+"""
+        self.write("room.toml", job)
+        self.expect(0, "mesh", "room.toml")
+        groups = {group["name"]: group for group in self.report("room.json")["boundaries"]}
+        self.assertEqual(set(groups), {"floor", "ends", "room_y_low", "room_y_high", "room_z_high"})
+        self.write("room.toml", job.replace("[1, 2]", "[1, 7]"))
+        self.expect(2, "mesh", "room.toml", says=["room.toml:", "boundaries.ends", "has no face 7", "6"])
+        self.write("room.toml", job.replace("-2]", "-2, 1]"))
+        self.expect(2, "mesh", "room.toml", says=["room.toml:4"])
+        self.write("room.toml", job.replace("[0, 0, -2]", "[1, 1, 1]"))
+        self.expect(2, "mesh", "room.toml", says=["room.toml:4", "boundaries.floor", "no face", "looks along (1, 1, 1)"])
+
     def test_surface_alone(self):
         self.write("ball.geom.toml", BALL)
         self.expect(0, "mesh", "ball.geom.toml", "-o", "ball.stl", "--stop-after", "surface", "--hmax", "0.1")

@@ -337,6 +337,8 @@ Options unusual_options() {
   for (const auto& [key, value] : settings) set_option(o, key, value);
   set_option(o, "boundaries.wing.select", "O?L*");
   set_option(o, "boundaries.wing.kind", "wall");
+  set_option(o, "boundaries.tip.select", "{ id = [3, 4] }");
+  set_option(o, "boundaries.root.select", "{ normal = [0, -1, 0] }");
   set_option(o, "size.on.'le*'.h", "0.5%");
   set_option(
       o, "size.source",
