@@ -158,7 +158,7 @@ struct BrepOptions {
   double least_size = 0;          ///< of sides that are made shorter for their turn, or beside short edges
   /// @brief What is narrower is gridded across: tiny edges, sliver faces, borders that touch; 0: nothing is.
   double bridge_below = 0;
-  int most_rounds = 8;            ///< of gridding with lower sizes where a face or the whole failed
+  int most_rounds = 8;  ///< of gridding with lower sizes where a face or the whole failed
 };
 
 /// @brief One face's grid.
