@@ -77,6 +77,7 @@ Inspected inspect(const std::string& path, const std::string& format, Context& c
   }
   const Model model = build_model({{result.mesh, std::filesystem::path(path).stem().string()}}, context);
   result.surface = check_surface(model, context);
+  if (!result.cad.unit.empty()) result.surface.likely_unit.clear();  // it is known
   result.findings = result.surface.findings;
   result.mesh = surface_mesh(model);  // the facts are those of the welded, triangulated surface
   return result;

@@ -182,6 +182,11 @@ static void check_levels(const Options& options) {
   with_place(options, "refine.geometry", [&] { format_of(refine.geometry); });
 }
 
+void check_output_units(const Options& options) {
+  if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
+    throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
+}
+
 void check_job(const Options& options) {
   if (options.input.files.empty() && options.planar.curves.empty())
     throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
@@ -190,8 +195,9 @@ void check_job(const Options& options) {
   check_domain(options);
   check_sizes(options);
   check_levels(options);
-  if (!options.output.units.empty() && metres_per_unit(options.input.units) == 0)
-    throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
+  const auto& files = options.input.files;
+  if (std::none_of(files.begin(), files.end(), [](const std::string& file) { return is_cad_file(file); }))
+    check_output_units(options);  // CAD may say its unit
   with_place(options, "output.require", [&] { try_gates(options.output.require); });
   check_files(options);
 }

@@ -12,6 +12,10 @@ namespace delfront {
 /// @throws IoError     an output that cannot be written
 void check_job(const Options& options);
 
+/// @brief That lengths can be turned into the output's unit; of CAD once it is read, for it may say its own.
+/// @throws UsageError
+void check_output_units(const Options& options);
+
 /// @brief Lengths in percent, in longest sides or in units become model units, so that nobody after us has to ask.
 /// @throws UsageError  a unit while that of the model is not known, hmin above hmax
 void resolve_lengths(Options& options, const LengthScale& scale);

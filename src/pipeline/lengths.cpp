@@ -65,7 +65,7 @@ double resolve_length(const Length& length, const LengthScale& scale) {
   if (metres == 0) throw UsageError(fmt::format("length '{}' has an unknown unit", to_text(length)));
   if (scale.metres_per_unit <= 0)
     throw UsageError(
-        fmt::format("length '{}' needs the unit of the model, which facet files do not carry; say it with "
+        fmt::format("length '{}' needs the unit of the model, which the input does not say; say it with "
                     "--units (input.units), or give the length in model units or percent",
                     to_text(length)));
   return length.value * metres / scale.metres_per_unit;

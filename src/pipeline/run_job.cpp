@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <stdexcept>
 
 #include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
@@ -399,6 +400,7 @@ void work(Run& run) {
   if (run.kind == JobKind::sizes) check_size_outputs(run.options);
   check_job(run.options);
   read_inputs(run);
+  check_output_units(run.options);
   read_geometry(run);
   if (is_planar_job(run.inputs)) return work_in_the_plane(run);
   Model model = make_model(run);
@@ -422,6 +424,9 @@ void put_error(JobResult& result, ExitCode code, const std::string& message, std
     result.error += fmt::format("; complete are: {}", fmt::join(result.files_written, " "));
 }
 
+constexpr const char* kOutOfMemory =
+    "out of memory; ask for larger sizes (--hmax, --growth) or use a machine with more";
+
 /// Run the steps; every way they can end becomes an exit code and a sentence.
 void work_and_catch(Run& run) {
   JobResult& result = run.result;
@@ -433,8 +438,9 @@ void work_and_catch(Run& run) {
   } catch (const Error& e) {
     put_error(result, e.exit_code, e.what(), e.places);
   } catch (const std::bad_alloc&) {
-    put_error(result, ExitCode::limit_reached,
-              "out of memory; ask for larger sizes (--hmax, --growth) or use a machine with more");
+    put_error(result, ExitCode::limit_reached, kOutOfMemory);
+  } catch (const std::length_error&) {  // more than any memory holds
+    put_error(result, ExitCode::limit_reached, kOutOfMemory);
   } catch (const std::exception& e) {
     put_error(result, ExitCode::internal_error,
               fmt::format("unexpected error: {}; please report this with the input file and the command", e.what()));

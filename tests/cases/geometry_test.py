@@ -57,6 +57,11 @@ class SmoothGeometry(case.Case):
         self.assertEqual(geometry["faces"][6]["kind"], "wall")
         self.assertIn("closed", result.stdout)
 
+    def test_more_than_any_memory_holds_is_a_limit(self):
+        self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
+        self.expect(6, "mesh", "room.geom.toml", "-o", "room.vtu", "--hmax", "1e-300", says="out of memory")
+        self.assertEqual(self.files(), ["room.geom.toml"])
+
     def test_faces_are_selected_by_number_and_normal(self):
         self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
         job = """[input]
