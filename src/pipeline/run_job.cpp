@@ -163,8 +163,8 @@ void set_boundaries(Run& run, Model& model) {
   }
 }
 
-/// What can be asked of triangles to look at: not their curvature, the surfaces' own counts; nothing on what has no
-/// name yet, such as the far field.
+/// What can be asked of triangles to look at: not their curvature, the surfaces' own counts; nothing on the far
+/// field, which has no name yet.
 Options options_for_looks(const Options& options, const Model& model, bool is_all_smooth) {
   Options result = options;
   if (is_all_smooth) {  // these look at the geometry itself
@@ -176,9 +176,13 @@ Options options_for_looks(const Options& options, const Model& model, bool is_al
   std::vector<std::string> names = model.corner_names;
   for (const Patch& patch : model.patches) names.push_back(patch.name);
   for (const Curve& curve : model.curves) names.push_back(curve.name);
+  std::vector<std::string> later;  // of the far field, which is not there yet
+  if (has_far_field(options)) later.push_back(options.domain.enclose.name);
+  for (const BoundaryOptions& b : options.boundaries)
+    if (!later.empty() && (b.select.empty() ? b.name : b.select) == later[0]) later.push_back(b.name);
   std::erase_if(result.size.on, [&](const SizeOnOptions& on) {
-    return std::none_of(names.begin(), names.end(),
-                        [&](const std::string& name) { return matches_pattern(name, on.name); });
+    const auto fits = [&](const std::string& name) { return matches_pattern(name, on.name); };
+    return std::none_of(names.begin(), names.end(), fits) && std::any_of(later.begin(), later.end(), fits);
   });
   return result;
 }

@@ -86,6 +86,13 @@ report = "room.json"
         self.write("room.toml", job.replace("[0, 0, -2]", "[1, 1, 1]"))
         self.expect(2, "mesh", "room.toml", says=["room.toml:4", "boundaries.floor", "no face", "looks along (1, 1, 1)"])
 
+    def test_sizes_on_names_that_are_not_there_are_refused_before_gridding(self):
+        self.write("room.geom.toml", SHELL)
+        arguments = ["mesh", "room.geom.toml", "-o", "room.stl", "--stop-after", "surface"]
+        self.expect(2, *arguments, "--set", "size.on.rinq.h=0.1", says=["size.on.rinq", "ring"])
+        self.expect(2, *arguments, "--set", "size.on.farfield.h=1", says="size.on.farfield")
+        self.expect(0, *arguments, "--farfield", "box:2c", "--set", "size.on.farfield.h=3")
+
     def test_surface_alone(self):
         self.write("ball.geom.toml", BALL)
         self.expect(0, "mesh", "ball.geom.toml", "-o", "ball.stl", "--stop-after", "surface", "--hmax", "0.1")
