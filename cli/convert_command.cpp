@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
+#include "pipeline/geometry_job.hpp"
 
 namespace delfront::cli {
 
@@ -43,6 +44,11 @@ class ConvertCommand : public Command {
     if (std::filesystem::equivalent(in_, out_, ignored))
       throw UsageError(fmt::format("{} is the input and would be overwritten; give OUT another name", out_));
     check_writable(out_);
+    if (is_smooth_file(in_))
+      throw UsageError(
+          fmt::format("{} is smooth geometry, which has no cells yet: delfront mesh {} -o {} --stop-after "
+                      "surface grids it",
+                      in_, in_, out_));
     const Mesh mesh = read_mesh(in_, context, from_);
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};
     const std::vector<std::string> changes = write_mesh(mesh, out_, context, how, to_);

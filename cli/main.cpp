@@ -21,6 +21,7 @@ const char* const kDescription =
     "  delfront info  body.stl                     look first: size, patches, closed or not\n"
     "  delfront check body.stl                     every defect with its place\n"
     "  delfront mesh  body.stl -o body.vtu         grid the inside\n"
+    "  delfront mesh  part.step -o part.su2        the same from CAD, sizes from its shape\n"
     "  delfront mesh  car.stl  -o case/ --farfield box:10c   grid the outside, for OpenFOAM\n"
     "  delfront check body.vtu                     quality of a grid, with its worst cells\n"
     "  delfront convert body.vtu body.su2          another file format\n"
@@ -28,6 +29,8 @@ const char* const kDescription =
 
 std::string footer() {
   return "File formats, by extension:\n" + format_list() +
+         "  CAD        .step .stp .iges .igs .brep .brp .egads   read by mesh, info, check, estimate, sizes\n"
+         "  text       .geom.toml                                the same: smooth geometry as text\n"
          "\n"
          "Exit codes: 0 done, 1 defect of ours, 2 usage or job file, 3 bad input, 4 gridding failed,\n"
          "            5 gate not met, 6 limit reached, 7 cannot write, 130 interrupted.\n"

@@ -86,6 +86,10 @@ report = "room.json"
         self.write("room.toml", job.replace("[0, 0, -2]", "[1, 1, 1]"))
         self.expect(2, "mesh", "room.toml", says=["room.toml:4", "boundaries.floor", "no face", "looks along (1, 1, 1)"])
 
+    def test_convert_says_what_grids_it(self):
+        self.write("ball.geom.toml", BALL)
+        self.expect(2, "convert", "ball.geom.toml", "ball.stl", says="delfront mesh ball.geom.toml -o ball.stl --stop-after")
+
     def test_sizes_on_names_that_are_not_there_are_refused_before_gridding(self):
         self.write("room.geom.toml", SHELL)
         arguments = ["mesh", "room.geom.toml", "-o", "room.stl", "--stop-after", "surface"]
