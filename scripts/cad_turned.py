@@ -31,6 +31,7 @@ by how much they differ from those of the file. {limit} % is allowed; `check_mes
 | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | --- |
 """
 MOST = 0.01
+SAME_VOLUME = 1e-3
 CODES = {"mm": "MM", "m": "M", "in": "INCH", "": "MM"}
 MILLIMETRES = {"MM": 1.0, "M": 1000.0, "INCH": 25.4}
 
@@ -86,7 +87,7 @@ def grid(path, options, folder, name):
     done = subprocess.run([options.python, options.checker, out, "--allow-nonmanifold-edges"], capture_output=True,
                           text=True, check=False)
     wrong = [line for line in (done.stdout + done.stderr).splitlines() if "rror" in line]
-    return {"triangles": last["triangles"], "cells": made["quality"]["num_cells"], "angle": last["min_angle"],
+    return {"volume": made["quality"]["volume"], "triangles": last["triangles"], "cells": made["quality"]["num_cells"], "angle": last["min_angle"],
             "dihedral": made["quality"]["measures"]["min_dihedral"]["min"], "grid": out,
             "stopped": made["geometry"][0]["stopped"],
             "problem": "" if done.returncode == 0 else "checker: " + (wrong[0] if wrong else "refused")}
@@ -107,9 +108,11 @@ def variants(unit):
             ("times 0.001", "small.brep", code, 0.001, 0)]
 
 
-def compare(made, base):
-    """What is not as in the file itself."""
+def compare(made, base, scale):
+    """What is not as in the file itself, which this is the scale times."""
     found = [made["problem"]] if made["problem"] else []
+    if abs(made["volume"] / base["volume"] / scale**3 - 1) > SAME_VOLUME:
+        found.append("another volume")
     for what in ("triangles", "cells"):
         if abs(made[what] / base[what] - 1) > MOST:
             found.append(f"{100 * (made[what] / base[what] - 1):+.1f} % {what}")
@@ -147,7 +150,7 @@ def judge(file, options, folder):
         try:
             run([options.cad_tool, "turn", path, out, CODES[unit], to, repr(scale), str(degrees)], options.timeout)
             made = grid(out, options, folder, "variant")
-            verdict = compare(made, base)
+            verdict = compare(made, base, scale)
         except Problem as e:
             verdict = str(e).replace(folder + os.sep, "").replace(options.data + os.sep, "")
         rows.append(row("", name, made, base, verdict))

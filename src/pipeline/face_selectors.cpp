@@ -172,15 +172,15 @@ class FaceSelection {
     std::vector<double> away;
     for (std::size_t f = 0; f < corners_.size(); ++f) away.push_back(distance_to(f, p));
     const std::size_t first = std::size_t(std::min_element(away.begin(), away.end()) - away.begin());
-    for (std::size_t f = first + 1; f < away.size(); ++f)
-      if (away[f] <= away[first] + slack_)
-        throw UsageError(fmt::format("{} is as near to {} as to {}: give a place within one of them", text_of(p),
-                                     face_text(first), face_text(f)));
     if (away[first] > width_)
       throw UsageError(
           fmt::format("{} is {:g} away from the nearest face of {}, farther than that is wide ({:g}): is it "
                       "in the file's unit?",
                       text_of(p), away[first], file_, width_));
+    for (std::size_t f = first + 1; f < away.size(); ++f)
+      if (away[f] <= away[first] + slack_)
+        throw UsageError(fmt::format("{} is as near to {} as to {}: give a place within one of them", text_of(p),
+                                     face_text(first), face_text(f)));
     return first;
   }
 

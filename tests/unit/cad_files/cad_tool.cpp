@@ -33,6 +33,7 @@ void turn(const std::vector<std::string>& words) {
   gp_Trsf turned, scaled;
   turned.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(1, 2, 3)), number(words[6]) * kDegree);
   scaled.SetScale(gp_Pnt(0, 0, 0), number(words[5]));
+  set_unit(words[3]);
   const TopoDS_Shape shape = BRepBuilderAPI_Transform(read(in, words[3]), turned * scaled, true).Shape();
   if (out.ends_with(".brep"))
     write_brep(shape, out);

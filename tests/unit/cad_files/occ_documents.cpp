@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "occ_documents.hpp"
 
+#include <IGESControl_Controller.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_PrinterOStream.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Controller.hxx>
 #include <STEPControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
@@ -23,13 +25,15 @@
 #include "occ_files.hpp"
 
 namespace delfront::occ {
-namespace {
-
 void set_unit(const std::string& unit) {
+  IGESControl_Controller::Init();
+  STEPControl_Controller::Init();
   Message::DefaultMessenger()->RemovePrinters(STANDARD_TYPE(Message_PrinterOStream));
   Interface_Static::SetCVal("xstep.cascade.unit", unit.c_str());
   Interface_Static::SetCVal("write.step.unit", unit.c_str());
 }
+
+namespace {
 
 /// Of a box: x low, x high, y low, y high, z low, z high.
 std::vector<TopoDS_Shape> faces_of(const TopoDS_Shape& shape) {
@@ -41,8 +45,8 @@ std::vector<TopoDS_Shape> faces_of(const TopoDS_Shape& shape) {
 }  // namespace
 
 void write_step_in(const std::string& unit, const TopoDS_Shape& shape, const std::string& path) {
-  STEPControl_Writer writer;
   set_unit(unit);
+  STEPControl_Writer writer;
   writer.Transfer(shape, STEPControl_AsIs);
   if (writer.Write(path.c_str()) != IFSelect_RetDone) throw std::runtime_error("cannot write " + path);
 }
@@ -69,8 +73,8 @@ void write_assembly(const std::string& path) {
   shapes->AddComponent(root, one, TopLoc_Location());
   shapes->AddComponent(root, other, TopLoc_Location(beside));
   shapes->UpdateAssemblies();
-  STEPCAFControl_Writer writer;
   set_unit("MM");
+  STEPCAFControl_Writer writer;
   Interface_Static::SetIVal("write.stepcaf.subshapes.name", 1);
   writer.Transfer(document, STEPControl_AsIs);
   if (writer.Write(path.c_str()) != IFSelect_RetDone) throw std::runtime_error("cannot write " + path);

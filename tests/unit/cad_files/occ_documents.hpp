@@ -6,7 +6,11 @@
 
 namespace delfront::occ {
 
-/// @brief One shape; the file says that its coordinates are in this unit: MM, M, INCH, … as OpenCASCADE calls them.
+/// @brief The unit of shapes in memory and of STEP files that are written: MM, M, INCH, … as OpenCASCADE calls them. To
+/// be said before a file is opened.
+void set_unit(const std::string& unit);
+
+/// @brief One shape; the file says that its coordinates are in this unit.
 void write_step_in(const std::string& unit, const TopoDS_Shape& shape, const std::string& path);
 
 /// @brief An assembly of two products, boxes that touch at x = 1; millimetres.
