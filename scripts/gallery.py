@@ -21,7 +21,7 @@ import tempfile
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 EXAMPLES = os.path.join(ROOT, "examples")
 LEAST_ANGLE = 20
-SIZE, COLOURS = (960, 540), 96
+SIZE, COLOURS = (960, 540), 256
 
 
 def text_of(folder, module, call):
@@ -67,13 +67,13 @@ class Row:
 ROWS = {
     "onera_m6": Row("m6.geom.toml", "ONERA M6 wing", text_of("onera_m6", "make_m6", lambda m: m.wing()), {
         "onera_m6": ["--by", "region"],
-        "onera_m6_trailing_edge": ["--by", "region", "--normal=-1,0.5,0", "--zoom=1.1,1.15,-0.02,1.16,1.2,0.02", "--lift", "25"],
+        "onera_m6_trailing_edge": ["--by", "region", "--normal=-1,-0.2,0", "--zoom=1.125,1.17,-0.01,1.15,1.2,0.01", "--lift", "15"],
     }),
     "ahmed": Row("ahmed.step", "Ahmed body, from STEP", make_ahmed,
                  {"ahmed_step": ["--zoom=-300,-400,0,1500,400,700"]}, 26.069091e9, 1e-3, has_cells=True),
     "tee": Row("tee.geom.toml", "Pipe tee", shape_of("tee"), {"tee": ["--by", "region"]}, tee_volume()),
     "propeller": Row("propeller.geom.toml", "Propeller: splines on a hub", text_of("propeller", "make_propeller", lambda m: m.propeller()),
-                     {"propeller": ["--by", "region", "--normal=0.5,1,-1.2", "--lift", "0", "--zoom=-0.85,-0.75,-0.3,0.75,0.9,0.45"],
+                     {"propeller": ["--by", "region", "--normal=0.5,1,-1.2", "--lift", "0", "--zoom=-0.6,-0.6,-0.4,0.6,0.55,0.3"],
                       "propeller_root": ["--by", "region", "--normal=0.5,1,-0.6", "--zoom=-0.1,-0.35,-0.15,0.35,0.1,0.2", "--lift", "0"]},
                      propeller_volume()),
     "blade": Row("blade.geom.toml", "Twisted blade", shape_of("blade"),
