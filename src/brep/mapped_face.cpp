@@ -337,15 +337,16 @@ class ChartedPart {
 
 void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, ChartWay way, FaceGrid& grid,
                  Context& context) {
+  const bool takes_any = way == ChartWay::any || way == ChartWay::cut_off;
   try {
-    for (const FacePart& part : find_parts(face, size, grid)) {
+    for (const FacePart& part : find_parts(face, size, way == ChartWay::cut_off, grid)) {
       const ParameterBox box = box_of(grid, part);
       const std::optional<Chart> chart = way == ChartWay::flat
                                              ? flat_chart(*face.surface, part, box, grid)
-                                             : choose_chart(*face.surface, part, box, size, way == ChartWay::any, grid);
+                                             : choose_chart(*face.surface, part, box, size, takes_any, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
-      charted.fill(size, size.is_lowered_on(*face.surface, box), way == ChartWay::any, box, options, context);
+      charted.fill(size, size.is_lowered_on(*face.surface, box), takes_any, box, options, context);
       if (!grid.gave_up.empty()) return;
     }
   } catch (const InputError& e) {
