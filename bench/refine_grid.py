@@ -58,15 +58,8 @@ def make_grids(ours: str, tets: float, folder: Path) -> None:
     must([ours, "convert", "coarse.vtu", "coarse.msh", "-q"], folder)
 
 
-def stages(folder: Path) -> dict[str, float]:
-    seconds: dict[str, float] = {}
-    for stage in json.loads((folder / "report.json").read_text())["stages"]:
-        seconds[stage["stage"]] = seconds.get(stage["stage"], 0) + stage["seconds"]
-    return seconds
-
-
 def phase_of_delfront(folder: Path, log: str) -> float:
-    return sum(time for stage, time in stages(folder).items() if stage.startswith("refine"))
+    return sum(time for stage, time in script.stages(folder).items() if stage.startswith("refine"))
 
 
 def facts_of_delfront(folder: Path, log: str) -> dict:
@@ -113,7 +106,7 @@ def with_topology(tool: running.Tool, times: list[float]) -> running.Tool:
     """The phase of our runs, while the seconds of the topology are noted."""
 
     def phase(folder: Path, log: str) -> float:
-        times.append(sum(time for stage, time in stages(folder).items() if stage in TOPOLOGY))
+        times.append(sum(time for stage, time in script.stages(folder).items() if stage in TOPOLOGY))
         return phase_of_delfront(folder, log)
 
     tool.phase = phase

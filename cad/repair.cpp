@@ -30,6 +30,7 @@
 #include "fmt/format.h"
 #include "geometry.hpp"
 #include "part.hpp"
+#include "shells.hpp"
 
 namespace delfront::cad {
 namespace {
@@ -254,15 +255,6 @@ bool is_inside_out(const TopoDS_Shape& solid, double diagonal) {
   BRepClass3d_SolidClassifier where(solid);
   where.PerformInfinitePoint(1e-7 * diagonal);
   return where.State() == TopAbs_IN;
-}
-
-/// A shell with each of these faces once.
-TopoDS_Shell shell_of(const std::vector<TopoDS_Face>& faces) {
-  BRep_Builder builder;
-  TopoDS_Shell shell;
-  builder.MakeShell(shell);
-  for (const TopoDS_Face& face : faces) builder.Add(shell, face);
-  return shell;
 }
 
 }  // namespace

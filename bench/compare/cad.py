@@ -12,6 +12,7 @@ import numpy as np
 
 from . import grids, peers
 from .running import Tool
+from .script import stages
 
 LIMIT = 240  # seconds in which a peer has to find its size
 OUR_LIMIT = 60  # seconds of one run of ours that looks for one
@@ -31,13 +32,6 @@ def copy_of(file: Path, folder: Path) -> Path:
     text = file.read_text(encoding="latin-1")
     copy.write_text(text[text.index("\n") + 1 :] if text.startswith("DBRep") else text, encoding="latin-1")
     return copy
-
-
-def stages(folder: Path) -> dict[str, float]:
-    found: dict[str, float] = {}
-    for stage in json.loads((folder / "report.json").read_text())["stages"]:
-        found[stage["stage"]] = found.get(stage["stage"], 0.0) + stage["seconds"]
-    return found
 
 
 def our_details(folder: Path, log: str) -> dict:

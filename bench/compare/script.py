@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts of this folder share: lists in options, and results put between marks of a page."""
 
+import json
 from pathlib import Path
 
 
@@ -42,3 +43,11 @@ def publish(text: str, path: Path, maker: str, writes: bool) -> int:
     if writes:
         replace_between(path, maker, text)
     return 0
+
+
+def stages(folder: Path) -> dict[str, float]:
+    """Seconds of each stage of the run whose report.json lies in the folder, rounds added up."""
+    seconds: dict[str, float] = {}
+    for stage in json.loads((folder / "report.json").read_text())["stages"]:
+        seconds[stage["stage"]] = seconds.get(stage["stage"], 0.0) + stage["seconds"]
+    return seconds

@@ -11,10 +11,16 @@
 
 namespace delfront {
 
-/// @brief The diameter of the smallest ball round the geometry, by samples: a length that does not change when it is
-/// turned, as the diagonal of its box does. Of a box it is the diagonal.
+/// @brief Lengths of a geometry that do not change when it is turned, as the diagonal of its box does.
+struct BrepExtent {
+  double whole = 0;   ///< diameter of the smallest ball round it; of a box its diagonal
+  double body = 0;    ///< the same without a far field that is part of the geometry; without one: the whole
+  Point body_centre;  ///< of that ball
+};
+
+/// @brief By samples. A far field is the few largest faces, each eight times as large as all others together.
 /// @par Cost  O(samples), some hundred a face
-double measure_extent(const Brep& brep);
+BrepExtent measure_extent(const Brep& brep);
 
 /// @brief What smooth geometry asks for by itself: curvature, lines that come close, gaps (S9 to S11).
 struct BrepSizes {
@@ -29,12 +35,13 @@ struct BrepSizes {
 
 /// @brief A first, coarse grid of a Brep, to find sizes from. It has no crossings checked.
 struct BrepLook {
-  double extent = 0;
+  BrepExtent extent;
   Model grid;
   BrepGridReport report;  ///< with parameters
 };
 
-/// @brief Sides of a twentieth of the extent at most, and no side turns by over 40 degrees.
+/// @brief Sides of a twentieth of the body's extent at most, growing away from it, and no side turns by over 40
+/// degrees.
 /// @throws as grid_brep()
 BrepLook look_at_brep(const Brep& brep, Context& context);
 

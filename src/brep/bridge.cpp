@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kSmall = 0.117;         ///< squared sine of 20 degrees: angles under it are worked on
 constexpr double kLeastGain = 1e-3;      ///< of a squared sine
-constexpr double kMostLoss = 0.8;        ///< of one, where points merge
+constexpr double kMostLoss = 0.8;        ///< of one, where points merge, ...
+constexpr double kTiny = 0.25;           ///< ... and of `below`: sides so short go, even where that ...
+constexpr double kMostTinyLoss = 0.5;    ///< ... leaves so much for the next to lift
 constexpr double kAgree = 0.3;           ///< cosine between a triangle and its surface at its corners
 constexpr double kWedge = 60 * kDegree;  ///< least angle between neighbours, ...
 constexpr double kCusp = 5 * kDegree;    ///< borders that meet at more are a corner, which stays
@@ -176,14 +178,15 @@ class Bridger {
     }
     std::sort(across.begin(), across.end());
     if (plan.gone.empty() || std::adjacent_find(across.begin(), across.end()) != across.end()) return false;
+    const double tiny = distance(at(p), at(q)) < kTiny * below_ ? kMostTinyLoss : kMostLoss;
+    const double share = is_shortest ? tiny : 1;
     std::vector<std::uint32_t> common;
     const std::vector<std::uint32_t> round_p = around(p), round_q = around(q);
     std::set_intersection(round_p.begin(), round_p.end(), round_q.begin(), round_q.end(), std::back_inserter(common));
     for (const std::uint32_t r : across)
       if (num_triangles(r, p) + num_triangles(r, q) == 2) return false;  // nothing would be left there
     if (common.size() == across.size() + 1 && drop_enclosed(across, p, q)) return merge(q, p, is_shortest);
-    if (common != across || !is_better(plan, star_.at(q), is_shortest ? kMostLoss : 1, is_shortest ? 0 : kLeastGain))
-      return false;
+    if (common != across || !is_better(plan, star_.at(q), share, is_shortest ? 0 : kLeastGain)) return false;
     across.insert(across.end(), {p, q});
     if (folds(plan, p, across)) return false;
     bridges_.push_back({at(p), distance(at(p), at(q))});

@@ -13,7 +13,9 @@ constexpr int kFewPieces = 32;             ///< of tables where lengths are even
 constexpr double kEven = 1.0001;           ///< ratio of lengths that are
 constexpr double kAlmostStraight = 1.01;   ///< ratio of slopes
 constexpr double kMostTurn = 1.9 * std::numbers::pi;
-constexpr double kLeastAround = 1e-3;                      ///< of the widest: another pole at the far end
+constexpr double kNearPole = 0.5;      ///< of the length from the pole: there ...
+constexpr double kMostPower = 2;       ///< ... the radius grows with that power at most: lips would shrink to nothing
+constexpr double kLeastAround = 1e-3;  ///< of the widest: another pole at the far end
 constexpr double kLeastUnrolled = 1.3 * std::numbers::pi;  ///< with less, few triangles at the tip turn by too much
 constexpr double kFullTurn = 1 - 1e-9;                     ///< of a period
 
@@ -123,7 +125,12 @@ void Chart::make_polar(const ParameterBox& box) {
   double s = 0.5 * step * (speed[0] + speed[1]), log_over = 0;
   const double k = around[1] / rate / s;
   values[1] = s;
-  const auto excess = [&](std::size_t i, double at) { return k * rate / around[i] - 1 / at; };
+  double all = 0;
+  for (std::size_t i = 0; i < kPieces; ++i) all += 0.5 * step * (speed[i] + speed[i + 1]);
+  const auto excess = [&](std::size_t i, double at) {
+    const double wanted = k * rate / around[i];
+    return (at < kNearPole * all ? std::min(wanted, kMostPower / at) : wanted) - 1 / at;
+  };
   for (std::size_t i = 1; i < kPieces; ++i) {
     const double ds = 0.5 * step * (speed[i] + speed[i + 1]);
     log_over += 0.5 * ds * (excess(i, s) + excess(i + 1, s + ds));

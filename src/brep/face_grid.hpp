@@ -57,8 +57,9 @@ struct FaceGrid {
 FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges);
 
 /// @brief Which charts a face is filled in. even: those that are near lengths in space; flat: seen from above, for
-/// faces that are almost plane, whatever their parameters do; any: by whole sides, however far from lengths in space.
-enum class ChartWay : std::uint8_t { even, flat, any };
+/// faces that are almost plane, whatever their parameters do; any: by whole sides, however far from lengths in space;
+/// cut_off: the same, with tips cut off where a face is far longer than wide.
+enum class ChartWay : std::uint8_t { even, flat, any, cut_off };
 
 /// @brief Fill a face in charts of its parameter plane (see chart.hpp). Says in gave_up why it could not.
 void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, ChartWay way, FaceGrid& grid,

@@ -189,8 +189,9 @@ class BrepGridder {
       if (angle > best_angle) best = grid, best_angle = angle;
       return best_angle > kFairAngleDeg;
     };
-    const bool is_mapped = !is_direct && (keeps(map(ChartWay::flat)) || keeps(map(ChartWay::any)) ||
-                                          (best_angle >= 0 && border.points.size() > kMostForDirect));
+    const bool is_mapped =
+        !is_direct && (keeps(map(ChartWay::flat)) || keeps(map(ChartWay::cut_off)) || keeps(map(ChartWay::any)) ||
+                       (best_angle >= 0 && border.points.size() > kMostForDirect));
     if (!is_mapped) keeps(fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); }));
     if (best_angle >= 0) grid = std::move(best);
     grid.why_direct = why.empty() ? "its grids in even charts failed" : why;

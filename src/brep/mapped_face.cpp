@@ -170,14 +170,16 @@ ChartLook look_at(const Chart& chart, std::span<const Point2> places, const Para
   return look;
 }
 
-/// Linear, or polar round the part's pole, or round one that it has no part in where that is better.
+/// Linear, or polar round the part's pole, or round one that it has no part in where that is better (and was not cut
+/// off, since a chart round it would span too much).
 std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
-                                  const WantedSize& size, bool takes_any, FaceGrid& grid) {
+                                  const WantedSize& size, ChartWay way, FaceGrid& grid) {
   std::optional<Chart> best;
   best.emplace(surface, box, part.pole);
   const std::vector<Point2> places = places_to_look_at(grid, part, box);
   ChartLook look = look_at(*best, places, box, size);
-  if (part.pole == Chart::Pole::none && (look.stretch > kTryPolar || look.change > kMostChange)) {
+  if (part.pole == Chart::Pole::none && way != ChartWay::cut_off &&
+      (look.stretch > kTryPolar || look.change > kMostChange)) {
     const DegenerateSides at = surface.degenerate_sides();
     const std::pair<bool, Chart::Pole> sides[] = {{at.u_low, Chart::Pole::u_low},
                                                   {at.u_high, Chart::Pole::u_high},
@@ -192,7 +194,7 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
       best.emplace(surface, box, pole);
     }
   }
-  if (takes_any) return best;
+  if (way != ChartWay::even) return best;
   if (look.stretch > kMostStretch)
     grid.fail(fmt::format("the mapping stretches lengths by {:.3g} in one direction over another", look.stretch),
               look.at);
@@ -338,14 +340,15 @@ class ChartedPart {
 void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions& options, ChartWay way, FaceGrid& grid,
                  Context& context) {
   try {
-    for (const FacePart& part : find_parts(face, size, grid)) {
+    for (const FacePart& part : find_parts(face, size, way == ChartWay::cut_off, grid)) {
       const ParameterBox box = box_of(grid, part);
       const std::optional<Chart> chart = way == ChartWay::flat
                                              ? flat_chart(*face.surface, part, box, grid)
-                                             : choose_chart(*face.surface, part, box, size, way == ChartWay::any, grid);
+                                             : choose_chart(*face.surface, part, box, size, way, grid);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
-      charted.fill(size, size.is_lowered_on(*face.surface, box), way == ChartWay::any, box, options, context);
+      const bool by_steps = way == ChartWay::any || way == ChartWay::cut_off;
+      charted.fill(size, size.is_lowered_on(*face.surface, box), by_steps, box, options, context);
       if (!grid.gave_up.empty()) return;
     }
   } catch (const InputError& e) {

@@ -49,52 +49,10 @@ class NurbsSurface final : public SmoothSurface {
   DegenerateSides degenerate_sides() const override { return sides_; }
 
   SurfaceDerivatives derivatives(Point2 uv) const override {
-    switch (pair_of(u_.degree(), v_.degree())) {  // the usual ones
-      case pair_of(3, 3):
-        return second_order<3, 3>(uv);
-      case pair_of(3, 1):
-        return second_order<3, 1>(uv);
-      case pair_of(1, 3):
-        return second_order<1, 3>(uv);
-      case pair_of(2, 2):
-        return second_order<2, 2>(uv);
-      case pair_of(2, 1):
-        return second_order<2, 1>(uv);
-      case pair_of(1, 2):
-        return second_order<1, 2>(uv);
-      case pair_of(1, 1):
-        return second_order<1, 1>(uv);
-      case pair_of(2, 3):
-        return second_order<2, 3>(uv);
-      case pair_of(3, 2):
-        return second_order<3, 2>(uv);
-      default:
-        return second_order<0, 0>(uv);
-    }
+    return with_degrees([&]<int kU, int kV>() { return second_order<kU, kV>(uv); });
   }
   SurfaceTangents tangents(Point2 uv) const override {
-    switch (pair_of(u_.degree(), v_.degree())) {  // the usual ones
-      case pair_of(3, 3):
-        return first_order<3, 3>(uv);
-      case pair_of(3, 1):
-        return first_order<3, 1>(uv);
-      case pair_of(1, 3):
-        return first_order<1, 3>(uv);
-      case pair_of(2, 2):
-        return first_order<2, 2>(uv);
-      case pair_of(2, 1):
-        return first_order<2, 1>(uv);
-      case pair_of(1, 2):
-        return first_order<1, 2>(uv);
-      case pair_of(1, 1):
-        return first_order<1, 1>(uv);
-      case pair_of(2, 3):
-        return first_order<2, 3>(uv);
-      case pair_of(3, 2):
-        return first_order<3, 2>(uv);
-      default:
-        return first_order<0, 0>(uv);
-    }
+    return with_degrees([&]<int kU, int kV>() { return first_order<kU, kV>(uv); });
   }
 
   Point2 closest(Point p, Point2 start) const override;
@@ -104,6 +62,33 @@ class NurbsSurface final : public SmoothSurface {
     std::size_t span_u, span_v;
     Basis u, v;
   };
+
+  /// What is computed with the degrees known to the compiler where they are usual ones, else with 0 for both.
+  template <class Work>
+  auto with_degrees(const Work& work) const -> decltype(work.template operator()<0, 0>()) {
+    switch (pair_of(u_.degree(), v_.degree())) {
+      case pair_of(1, 1):
+        return work.template operator()<1, 1>();
+      case pair_of(1, 2):
+        return work.template operator()<1, 2>();
+      case pair_of(1, 3):
+        return work.template operator()<1, 3>();
+      case pair_of(2, 1):
+        return work.template operator()<2, 1>();
+      case pair_of(2, 2):
+        return work.template operator()<2, 2>();
+      case pair_of(2, 3):
+        return work.template operator()<2, 3>();
+      case pair_of(3, 1):
+        return work.template operator()<3, 1>();
+      case pair_of(3, 2):
+        return work.template operator()<3, 2>();
+      case pair_of(3, 3):
+        return work.template operator()<3, 3>();
+      default:
+        return work.template operator()<0, 0>();
+    }
+  }
 
   template <int kU, int kV>
   void find_basis(Point2 uv, int orders, Place& b) const {

@@ -3,6 +3,7 @@
 // and the smallest ball round those few is found anew, until none is outside. The radius rises each time.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "Eigen/Dense"
 #include "delfront/brep_sizes.hpp"
@@ -14,6 +15,10 @@ constexpr int kAlongEdge = 24;
 constexpr int kAcrossFace = 16;
 constexpr double kInside = 1e-12;  ///< of the radius: places so little outside count as inside
 constexpr int kMostSteps = 1000;
+// A far field that is part of the geometry: at most so many faces, each so many times as large as the rest together,
+// which has so many faces at least. Less than that share of the whole is no body, but a splinter.
+constexpr std::size_t kMostOfFarField = 8, kLeastOfBody = 3;
+constexpr double kFarFieldRatio = 8, kLeastBodyShare = 1e-4;
 
 struct Ball {
   Point centre;
@@ -114,13 +119,37 @@ void add_samples(const Brep& brep, const BrepFace& face, std::vector<Point>& sam
     }
 }
 
+/// Round all faces but those of a far field: the few largest, each far larger than the rest together.
+Ball ball_of_body(const std::vector<std::vector<Point>>& samples, const Ball& whole) {
+  std::vector<std::pair<double, std::size_t>> faces;  // largest first
+  for (std::size_t f = 0; f < samples.size(); ++f) faces.emplace_back(-enclosing_ball(samples[f]).radius, f);
+  std::sort(faces.begin(), faces.end());
+  for (std::size_t k = 1; k <= kMostOfFarField && k + kLeastOfBody <= faces.size(); ++k) {
+    if (faces[k - 1].first > kFarFieldRatio * faces[k].first) continue;  // both negative: not so much larger
+    std::vector<Point> rest;
+    for (std::size_t i = k; i < faces.size(); ++i) {
+      const std::vector<Point>& at = samples[faces[i].second];
+      rest.insert(rest.end(), at.begin(), at.end());
+    }
+    const Ball body = enclosing_ball(rest);
+    const bool is_far = -faces[k - 1].first >= kFarFieldRatio * body.radius;
+    if (is_far && body.radius >= kLeastBodyShare * whole.radius) return body;
+  }
+  return whole;
+}
+
 }  // namespace
 
-double measure_extent(const Brep& brep) {
-  std::vector<Point> samples;
-  for (const BrepFace& face : brep.faces) add_samples(brep, face, samples);
-  std::erase_if(samples, [](Point p) { return !is_finite(p); });
-  return 2 * std::max(0.0, enclosing_ball(samples).radius);
+BrepExtent measure_extent(const Brep& brep) {
+  std::vector<std::vector<Point>> samples(brep.faces.size());
+  std::vector<Point> all;
+  for (std::size_t f = 0; f < samples.size(); ++f) {
+    add_samples(brep, brep.faces[FaceId(f)], samples[f]);
+    std::erase_if(samples[f], [](Point p) { return !is_finite(p); });
+    all.insert(all.end(), samples[f].begin(), samples[f].end());
+  }
+  const Ball whole = enclosing_ball(all), body = ball_of_body(samples, whole);
+  return {2 * std::max(0.0, whole.radius), 2 * std::max(0.0, body.radius), body.centre};
 }
 
 }  // namespace delfront

@@ -54,14 +54,14 @@ CurvatureSizes curvature_wish(const SizeOptions& size, const AccuracyNumbers& us
   return wish;
 }
 
-/// The wish of the whole, for an extent.
-BrepSizes geometry_wish(const Options& options, double extent, bool has_field) {
+/// The wish of the whole; the least size is that of the body, a far field has no details.
+BrepSizes geometry_wish(const Options& options, const BrepExtent& extent, bool has_field) {
   const SizeOptions& size = options.size;
   const AccuracyNumbers usual = accuracy_numbers(size.accuracy);
   BrepSizes wish;
-  wish.hmax = size.hmax ? size.hmax->value : has_field ? extent : size.steeper * usual.hmax_share * extent;
-  wish.hmin = std::min(wish.hmax, size.hmin ? size.hmin->value : usual.hmin_share * extent);
-  wish.curvature = curvature_wish(size, usual, extent);
+  wish.hmax = size.hmax ? size.hmax->value : has_field ? extent.whole : size.steeper * usual.hmax_share * extent.whole;
+  wish.hmin = std::min(wish.hmax, size.hmin ? size.hmin->value : usual.hmin_share * extent.body);
+  wish.curvature = curvature_wish(size, usual, extent.whole);
   wish.line_cells = cells_of(size.proximity, usual.line_cells, is_automatic(size));
   wish.gap_cells = cells_of(size.gap, usual.gap_cells, is_automatic(size));
   if (size.proximity.hmin) wish.line_hmin = size.proximity.hmin->value;
@@ -70,7 +70,7 @@ BrepSizes geometry_wish(const Options& options, double extent, bool has_field) {
   return wish;
 }
 
-BrepOptions gridding_options(const Options& options, double extent) {
+BrepOptions gridding_options(const Options& options, const BrepExtent& extent) {
   BrepOptions how;
   if (options.surface.bridge) how.bridge_below = geometry_wish(options, extent, false).hmin;
   if (options.surface.method == "front") how.method = BrepOptions::Method::direct;
@@ -120,7 +120,7 @@ std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook
   return combine_size_fields(std::move(parts), options.size.hmin ? wish.hmin : 0, wish.hmax);
 }
 
-BrepGoals geometry_goals(const Options& options, double extent) {
+BrepGoals geometry_goals(const Options& options, const BrepExtent& extent) {
   const SizeOptions& size = options.size;
   const AccuracyNumbers usual = accuracy_numbers(size.accuracy);
   BrepGoals goals;
@@ -131,7 +131,7 @@ BrepGoals geometry_goals(const Options& options, double extent) {
     goals.angle_deg = 0;
   } else if (!size.deviation && !(size.angle > 0)) {
     goals.turn_deg = kTurnMargin * 360 / (size.curvature > 0 ? size.curvature : usual.cells_per_turn);
-    if (!(size.curvature > 0)) goals.deviation = usual.deviation_share * extent;
+    if (!(size.curvature > 0)) goals.deviation = usual.deviation_share * extent.whole;
   }
   return goals;
 }

@@ -30,7 +30,7 @@ std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook
                                                 std::shared_ptr<const SizeField> asked, Context& context);
 
 /// @brief What the surface grid has to reach, by what is asked for.
-BrepGoals geometry_goals(const Options& options, double extent);
+BrepGoals geometry_goals(const Options& options, const BrepExtent& extent);
 
 /// @brief A grid of the sizes that are usual: to look at the geometry.
 Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report);

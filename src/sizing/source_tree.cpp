@@ -41,6 +41,7 @@ constexpr float kFar = 1e18f;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMaxStack = 1024;  // seven left a level, 64 levels (see SourceTreeBuilder) and more
 
+constexpr std::size_t kMostInFirst = 8192;           ///< terms of the tree that serves to sample
 constexpr std::size_t kPlacesOfSample = 512;         ///< for quantiles of some thirty sizes
 constexpr std::size_t kChunk = 64, kLeastChunk = 8;  // places that share a frontier
 
@@ -72,61 +73,62 @@ double SourceTerm::lower_bound(const Box& query) const {
   return factor * law(std::max(0.0, away - 1e-14 * size)) * (1 - 1e-13);
 }
 
-SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) : terms_(std::move(terms)) {
-  if (terms_.empty()) return;
+SourceTree::SourceTree(std::vector<SourceTerm> terms, Context& context) {
+  if (terms.empty()) return;
   Box box;
-  for (const SourceTerm& term : terms_) box.add(term.shape.box());
+  for (const SourceTerm& term : terms) box.add(term.shape.box());
   centre_ = box.centre();
   extent_ = 0.5 * box.longest_side();
   if (!(extent_ > 0)) extent_ = 1;
   per_extent_ = 1 / extent_;
-  number_.resize(terms_.size());
-  for (std::size_t i = 0; i < number_.size(); ++i) number_[i] = static_cast<std::uint32_t>(i);
-  // The first tree, for sizes spread evenly from the least delta0, serves to sample the field for the second.
-  std::vector<double> sizes;
-  for (int pass = 0; pass < 2; ++pass) {
-    context.check_limits();
-    SourceTreeBuilder builder(terms_, centre_, extent_);
-    if (pass == 0)
-      builder.choose_first_sizes();
-    else
-      builder.choose_sizes(sample_sizes());
-    const auto order = builder.build(pass == 1, context);
-    std::copy(builder.edges().begin(), builder.edges().end(), edge_);
-    for (std::size_t b = 0; b < kBins; ++b) per_width_[b] = builder.width(b) > 0 ? 1 / builder.width(b) : 0;
-    nodes_.assign(builder.nodes().size(), {});
-    reaches_.assign(builder.nodes().size() * kBins, {});
-    for (std::size_t n = 0; n < nodes_.size(); ++n) {
-      const SourceTreeBuilder::Node& from = builder.nodes()[n];
-      for (std::size_t c = 0; c < kWidth; ++c) {
-        for (int k = 0; k < 3; ++k) nodes_[n].low[k][c] = from.low[k][c], nodes_[n].high[k][c] = from.high[k][c];
-        nodes_[n].child[c] = from.child[c];
-        nodes_[n].turned = from.turned;
-        for (std::size_t b = 0; b < kBins; ++b) {
-          reaches_[b * nodes_.size() + n].reach[c] = from.reach[b][c];
-          reaches_[b * nodes_.size() + n].fall[c] = from.fall[b][c];
-        }
+  // A first tree, of some of the terms, for sizes spread evenly from the least delta0, serves to sample the field.
+  const std::size_t step = terms.size() / kMostInFirst + 1;
+  for (std::size_t i = 0; i < terms.size(); i += step) terms_.push_back(terms[i]);
+  build(nullptr, context);
+  const std::vector<double> sample = sample_sizes();
+  terms_ = std::move(terms);
+  build(&sample, context);
+}
+
+/// @param sample  sizes of the field at places all over it; null: not known yet
+void SourceTree::build(const std::vector<double>* sample, Context& context) {
+  context.check_limits();
+  SourceTreeBuilder builder(terms_, centre_, extent_);
+  sample != nullptr ? builder.choose_sizes(*sample) : builder.choose_first_sizes();
+  number_ = builder.build(sample != nullptr, context);
+  std::copy(builder.edges().begin(), builder.edges().end(), edge_);
+  for (std::size_t b = 0; b < kBins; ++b) per_width_[b] = builder.width(b) > 0 ? 1 / builder.width(b) : 0;
+  take_nodes(builder);
+  std::vector<SourceTerm> sorted;
+  sorted.reserve(terms_.size());
+  for (const std::uint32_t i : number_) sorted.push_back(std::move(terms_[i]));
+  terms_ = std::move(sorted);
+}
+
+void SourceTree::take_nodes(const SourceTreeBuilder& builder) {
+  nodes_.assign(builder.nodes().size(), {});
+  reaches_.assign(builder.nodes().size() * kBins, {});
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const SourceTreeBuilder::Node& from = builder.nodes()[n];
+    for (std::size_t c = 0; c < kWidth; ++c) {
+      for (int k = 0; k < 3; ++k) nodes_[n].low[k][c] = from.low[k][c], nodes_[n].high[k][c] = from.high[k][c];
+      nodes_[n].child[c] = from.child[c];
+      nodes_[n].turned = from.turned;
+      for (std::size_t b = 0; b < kBins; ++b) {
+        reaches_[b * nodes_.size() + n].reach[c] = from.reach[b][c];
+        reaches_[b * nodes_.size() + n].fall[c] = from.fall[b][c];
       }
     }
-    turned_.assign(builder.turned_boxes().size(), {});
-    for (std::size_t n = 0; n < turned_.size(); ++n) {
-      const SourceTreeBuilder::TurnedBoxes& from = builder.turned_boxes()[n];
-      for (std::size_t c = 0; c < kWidth; ++c)
-        for (int k = 0; k < 3; ++k) {
-          for (int j = 0; j < 3; ++j) turned_[n].axis[k][j][c] = from.axis[k][j][c];
-          turned_[n].at[k][c] = from.at[k][c];
-          turned_[n].half[k][c] = from.half[k][c];
-        }
-    }
-    std::vector<SourceTerm> sorted;
-    std::vector<std::uint32_t> numbers;
-    sorted.reserve(terms_.size());
-    for (const std::uint32_t i : order) {
-      sorted.push_back(std::move(terms_[i]));
-      numbers.push_back(number_[i]);
-    }
-    terms_ = std::move(sorted);
-    number_ = std::move(numbers);
+  }
+  turned_.assign(builder.turned_boxes().size(), {});
+  for (std::size_t n = 0; n < turned_.size(); ++n) {
+    const SourceTreeBuilder::TurnedBoxes& from = builder.turned_boxes()[n];
+    for (std::size_t c = 0; c < kWidth; ++c)
+      for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < 3; ++j) turned_[n].axis[k][j][c] = from.axis[k][j][c];
+        turned_[n].at[k][c] = from.at[k][c];
+        turned_[n].half[k][c] = from.half[k][c];
+      }
   }
 }
 
@@ -147,19 +149,16 @@ std::vector<double> SourceTree::sample_sizes() const {
 }
 
 SourceTree::Lanes SourceTree::Reach::squared(float below) const {
-  using Halves = std::uint16_t __attribute__((vector_size(2 * kWidth)));
-  using Words = std::uint32_t __attribute__((vector_size(4 * kWidth)));
-  Halves halves;
-  std::memcpy(&halves, fall, sizeof(halves));
-  Lanes lanes;
+  Lanes lanes, falls;
   std::memcpy(&lanes, reach, sizeof(lanes));
-  lanes -= below * std::bit_cast<Lanes>(__builtin_convertvector(halves, Words) << 16);
+  std::memcpy(&falls, fall, sizeof(falls));
+  lanes -= below * falls;
   lanes = lanes > 0 ? lanes : Lanes{};
   return lanes * lanes;
 }
 
 float SourceTree::Reach::squared(std::uint32_t lane, float below) const {
-  const float left = reach[lane] - below * std::bit_cast<float>(static_cast<std::uint32_t>(fall[lane]) << 16);
+  const float left = reach[lane] - below * fall[lane];
   return left > 0 ? left * left : 0;
 }
 
@@ -337,7 +336,7 @@ void SourceTree::fill_reaches(int bin, Frontier& frontier) const {
       const Entry& entry = frontier.entry[g * kWidth + k];
       const Reach& of = reaches[entry.parent];
       reach[k] = of.reach[entry.lane];
-      fall[k] = std::bit_cast<float>(static_cast<std::uint32_t>(of.fall[entry.lane]) << 16);
+      fall[k] = of.fall[entry.lane];
     }
     frontier.reach[bin][g] = reach;
     frontier.fall[bin][g] = fall;

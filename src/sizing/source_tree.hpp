@@ -21,6 +21,8 @@ struct alignas(64) SourceTerm {
   double lower_bound(const Box& box) const;
 };
 
+class SourceTreeBuilder;
+
 /// @brief The least of many terms, exact, by branch and bound in a tree of boxes eight wide.
 class SourceTree {
  public:
@@ -79,10 +81,10 @@ class SourceTree {
     Lanes axis[3][3], at[3], half[3];  // where |axis . p - at| <= half; axes a little shorter than 1
   };
   /// Distances within which a child may be below a size v: reach - fall * (share of the bin that v lies below its upper
-  /// end), never where that is negative. Falls are the upper halves of single precision numbers.
-  struct alignas(16) Reach {
+  /// end), never where that is negative.
+  struct alignas(64) Reach {
     float reach[kWidth];
-    std::uint16_t fall[kWidth];
+    float fall[kWidth];
     Lanes squared(float below) const;
     float squared(std::uint32_t lane, float below) const;
   };
@@ -121,6 +123,8 @@ class SourceTree {
   static constexpr double kNoBound = std::numeric_limits<double>::infinity();
   /// The least size, or `bound` where none is less.
   double least(Point p, Hint& hint, Frontier* frontier, double bound) const;
+  void build(const std::vector<double>* sample, Context& context);
+  void take_nodes(const SourceTreeBuilder& builder);
   std::vector<double> sample_sizes() const;
 
   std::vector<SourceTerm> terms_;      // in the order of the leaves

@@ -11,21 +11,21 @@
 namespace delfront {
 namespace {
 
-constexpr float kMargin = 0x1p-19f;     // of boxes, in units of the extent
-constexpr double kWiden = 1 + 4e-6;     // of reaches
-constexpr float kLeastReach = 1e-6f;    // its square must not vanish
-constexpr double kShort = 1 - 2e-6;     // axes, for the rounding of products with them
-constexpr float kTurnedMargin = 8e-6f;  // of turned boxes
-constexpr double kRoom = 1.2;           // places are expected within so many extents of the centre
-constexpr int kMedianDepth = 24;        // of nodes; below it clusters are halved only
+constexpr float kMargin = 0x1p-19f;                   // of boxes, in units of the extent
+constexpr double kWiden = 1 + 4e-6;                   // of reaches
+constexpr float kLeastReach = 1e-6f;                  // its square must not vanish
+constexpr double kShort = 1 - 2e-6;                   // axes, for the rounding of products with them
+constexpr float kTurnedMargin = 8e-6f;                // of turned boxes
+constexpr double kRoom = 1.2;                         // places are expected within so many extents of the centre
+constexpr double kLargestRoom = 4;                    // extents: places of the sample are no farther from a source
+constexpr double kLeastRange = 76, kMostRange = 1e6;  // of the first sizes
+constexpr double kFarther = 8;                        // between sizes outside of all sources
+constexpr int kMedianDepth = 24;                      // of nodes; below it clusters are halved only
 
 float rounded_up(double value) {
   const float f = static_cast<float>(value);
   return static_cast<double>(f) >= value ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
 }
-
-/// The upper half of the largest such number that is not above `value`.
-std::uint16_t upper_half(float value) { return static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(value) >> 16); }
 
 }  // namespace
 
@@ -70,7 +70,11 @@ SourceTreeBuilder::SourceTreeBuilder(const std::vector<SourceTerm>& terms, Point
 }
 
 void SourceTreeBuilder::choose_first_sizes() {
-  for (std::size_t k = 0; k < kBins; ++k) edge_[k] = smallest_ * std::pow(1.15, static_cast<double>(k));
+  double largest = std::numeric_limits<double>::infinity();  // of the field where the sources are
+  for (const SourceTerm& term : terms_) largest = std::min(largest, term.factor * term.law(kLargestRoom * extent_));
+  largest = std::clamp(largest, kLeastRange * smallest_, kMostRange * smallest_);
+  const double step = std::pow(largest / smallest_, 1.0 / (kBins - 2));
+  for (std::size_t k = 0; k < kBins; ++k) edge_[k] = smallest_ * std::pow(step, static_cast<double>(k));
   edge_.back() = std::numeric_limits<double>::infinity();
 }
 
@@ -78,11 +82,10 @@ void SourceTreeBuilder::choose_sizes(std::vector<double> sample) {
   std::erase_if(sample, [](double size) { return !std::isfinite(size); });
   std::sort(sample.begin(), sample.end());
   if (sample.empty()) return choose_first_sizes();
-  // Above the largest four more, for places farther out, then infinity.
+  // Above the largest four more, for places farther out, then infinity: there all terms are looked at.
   constexpr std::size_t kQuantiles = kBins - 5;
   for (std::size_t k = 0; k < kQuantiles; ++k) edge_[k] = sample[(k + 1) * (sample.size() - 1) / kQuantiles];
-  for (std::size_t k = kQuantiles; k < kBins; ++k)
-    edge_[k] = edge_[kQuantiles - 1] * std::pow(2, static_cast<double>(k - kQuantiles + 1));
+  for (std::size_t k = kQuantiles; k < kBins; ++k) edge_[k] = kFarther * edge_[k - 1];
   edge_.back() = std::numeric_limits<double>::infinity();
 }
 
@@ -182,7 +185,7 @@ void SourceTreeBuilder::set_child(Node& node, std::size_t lane, const Lines& lin
   for (int k = 0; k < 3; ++k) node.low[k][lane] = lines.low[k], node.high[k][lane] = lines.high[k];
   for (std::size_t b = 0; b < kBins; ++b) {
     node.reach[b][lane] = lines.reach[b];
-    node.fall[b][lane] = upper_half(kNarrow * lines.fall[b]);
+    node.fall[b][lane] = kNarrow * lines.fall[b];
   }
 }
 

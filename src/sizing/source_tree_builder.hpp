@@ -17,7 +17,7 @@ class SourceTreeBuilder {
   struct Node {
     float low[3][kWidth], high[3][kWidth];
     float reach[kBins][kWidth];  // as SourceTree keeps them
-    std::uint16_t fall[kBins][kWidth];
+    float fall[kBins][kWidth];
     std::uint32_t child[kWidth];
     std::uint32_t turned = SourceTree::kNone;
   };

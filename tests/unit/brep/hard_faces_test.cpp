@@ -110,6 +110,21 @@ TEST(HardFaces, PlaneQuadrangleThatFoldsAtACorner) {
   }
 }
 
+/// Half of a body twenty times as long as wide, flat like a fish, with a pole at each end: a chart round a pole would
+/// span ten orders of magnitude.
+TEST(HardFaces, SlenderBodyWithTwoPoles) {
+  constexpr std::size_t kRound = 9, kAlong = 7;
+  const double wide[kAlong] = {0, 1, 1, 1, 1, 0.6, 0}, along[kAlong] = {0, 0, 0.5, 1, 1.5, 2, 2};  // blunt ends
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < kRound; ++i)
+    for (std::size_t j = 0; j < kAlong; ++j) {
+      const double angle = kPi * double(i) / (kRound - 1), r = 0.05 * wide[j];
+      points.push_back({along[j], r * std::cos(angle), 0.2 * r * std::sin(angle)});
+    }
+  const Brep brep = patch_of(kRound, kAlong, std::move(points));
+  for (const double h : {0.02, 0.01, 0.004, 0.002}) expect_good_grid(brep, h, {20, 100});
+}
+
 /// Lengths along u change by 10^4 from one end to the other, and so does how far they differ from those along v.
 TEST(HardFaces, CrowdedParameters) {
   std::vector<Point> points;

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "delfront/brep_shapes.hpp"
 #include "delfront/surface_check.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "unit/brep_sizes/geometry_texts.hpp"
@@ -48,10 +49,53 @@ void expect_sound(const Made& made, double least_angle) {
 
 TEST(BrepSizes, ExtentIsThatOfTheSmallestBallHoweverTurned) {
   for (const Placing& to : {Placing{}, odd_placing(), odd_placing(1e-3)}) {
-    EXPECT_NEAR(measure_extent(brep_of(box_text(1, 2, 3, to))) / to.scale, std::sqrt(14.0), 1e-9);
-    EXPECT_NEAR(measure_extent(brep_of(torus_text(2, 0.5, to))) / to.scale, 5, 1e-2);
-    EXPECT_NEAR(measure_extent(brep_of(can_text(1, 2, to))) / to.scale, std::sqrt(8.0), 1e-2);
+    EXPECT_NEAR(measure_extent(brep_of(box_text(1, 2, 3, to))).whole / to.scale, std::sqrt(14.0), 1e-9);
+    EXPECT_NEAR(measure_extent(brep_of(torus_text(2, 0.5, to))).whole / to.scale, 5, 1e-2);
+    EXPECT_NEAR(measure_extent(brep_of(can_text(1, 2, to))).whole / to.scale, std::sqrt(8.0), 1e-2);
   }
+}
+
+/// A can in a sphere that is far larger, both about the origin.
+Brep can_in_a_far_field(double radius) {
+  Brep all = make_cylinder({}, 1, 2);
+  const Brep ball = make_sphere({}, radius);
+  const std::size_t corners = all.corners.size(), edges = all.edges.size();
+  for (const BrepCorner& corner : ball.corners) all.corners.push_back(corner);
+  for (BrepEdge edge : ball.edges) {
+    for (CornerId& c : edge.corners)
+      if (c.is_valid()) c = CornerId(corners + c.index());
+    all.edges.push_back(edge);
+  }
+  for (BrepFace face : ball.faces) {
+    for (auto& loop : face.loops)
+      for (BrepUse& use : loop) use.edge = EdgeId(edges + use.edge.index());
+    all.faces.push_back(face);
+  }
+  return all;
+}
+
+TEST(BrepSizes, AFarFieldIsNoPartOfTheBody) {
+  const double can = std::sqrt(8.0);
+  const BrepExtent far = measure_extent(can_in_a_far_field(50));
+  EXPECT_NEAR(far.whole, 100, 0.5);
+  EXPECT_NEAR(far.body, can, 1e-2);
+  EXPECT_LT(distance(far.body_centre, Point{0, 0, 1}), 1e-2);
+  const BrepExtent near = measure_extent(can_in_a_far_field(5));
+  EXPECT_EQ(near.body, near.whole);
+  const BrepExtent alone = measure_extent(make_cylinder({}, 1, 2));
+  EXPECT_EQ(alone.body, alone.whole);
+  EXPECT_NEAR(alone.whole, can, 1e-2);
+}
+
+TEST(BrepSizes, TheFirstLookIsAsFineOnABodyInAFarFieldAsAlone) {
+  Context context;
+  const auto triangles_of_can = [&](const Brep& brep) {
+    const BrepLook look = look_at_brep(brep, context);
+    std::size_t count = 0;
+    for (const std::uint32_t face : look.grid.input_face) count += face < 3 ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(triangles_of_can(can_in_a_far_field(50)), triangles_of_can(make_cylinder({}, 1, 2)));
 }
 
 TEST(BrepSizes, ThinTrailingEdgeHasNoSlivers) { expect_sound(grid(wing_text(0.002, 1.2)), 20); }

@@ -41,6 +41,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "occ_files.hpp"
+#include "shells.hpp"
+
 namespace delfront::occ {
 namespace {
 
@@ -55,21 +58,10 @@ TopoDS_Shape unit_box() { return BRepPrimAPI_MakeBox(1, 1, 1).Shape(); }
 
 TopoDS_Solid solid_of(const std::vector<TopoDS_Face>& faces) {
   BRep_Builder builder;
-  TopoDS_Shell shell;
-  builder.MakeShell(shell);
-  for (const TopoDS_Face& face : faces) builder.Add(shell, face);
   TopoDS_Solid solid;
   builder.MakeSolid(solid);
-  builder.Add(solid, shell);
+  builder.Add(solid, cad::shell_of(faces));
   return solid;
-}
-
-TopoDS_Compound together(const std::vector<TopoDS_Shape>& shapes) {
-  BRep_Builder builder;
-  TopoDS_Compound all;
-  builder.MakeCompound(all);
-  for (const TopoDS_Shape& shape : shapes) builder.Add(all, shape);
-  return all;
 }
 
 TopoDS_Vertex vertex_at(const gp_Pnt& p) {
@@ -173,23 +165,23 @@ TopoDS_Shape box_with_a_turned_face() {
 }
 
 TopoDS_Shape overlapping_boxes(double layer) {
-  return together({unit_box(), BRepPrimAPI_MakeBox(gp_Pnt(1 - layer, 0.2, 0.2), 1, 1, 1).Shape()});
+  return compound_of({unit_box(), BRepPrimAPI_MakeBox(gp_Pnt(1 - layer, 0.2, 0.2), 1, 1, 1).Shape()});
 }
 
 TopoDS_Shape sheet_through_a_box() {
   const gp_Pln plane(gp_Pnt(0.5, 0.5, 0.5), gp_Dir(0, 0, 1));
-  return together({unit_box(), BRepBuilderAPI_MakeFace(plane, -1, 1, -1, 1).Shape()});
+  return compound_of({unit_box(), BRepBuilderAPI_MakeFace(plane, -1, 1, -1, 1).Shape()});
 }
 
 TopoDS_Shape box_and_an_edge() {
-  return together({unit_box(), BRepBuilderAPI_MakeEdge(gp_Pnt(2, 0, 0), gp_Pnt(3, 1, 0)).Shape()});
+  return compound_of({unit_box(), BRepBuilderAPI_MakeEdge(gp_Pnt(2, 0, 0), gp_Pnt(3, 1, 0)).Shape()});
 }
 
-TopoDS_Shape empty_compound() { return together({}); }
+TopoDS_Shape empty_compound() { return compound_of({}); }
 
 TopoDS_Shape curves_only() {
-  return together({BRepBuilderAPI_MakeEdge(gp_Pnt(2, 0, 0), gp_Pnt(3, 1, 0)).Shape(),
-                   BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(), 1)).Shape()});
+  return compound_of({BRepBuilderAPI_MakeEdge(gp_Pnt(2, 0, 0), gp_Pnt(3, 1, 0)).Shape(),
+                      BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(), 1)).Shape()});
 }
 
 TopoDS_Shape box_with_a_corner_at(double x) {

@@ -63,6 +63,8 @@ void require(bool is_done, const std::string& path) {
   if (!is_done) throw std::runtime_error("cannot write " + path);
 }
 
+}  // namespace
+
 TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
   BRep_Builder builder;
   TopoDS_Compound all;
@@ -70,8 +72,6 @@ TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes) {
   for (const TopoDS_Shape& shape : shapes) builder.Add(all, shape);
   return all;
 }
-
-}  // namespace
 
 void write_step(const TopoDS_Shape& shape, const std::string& path) {
   be_silent();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files and places by OpenCASCADE itself, to compare with.
 #pragma once
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Shape.hxx>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@ struct Colour {
 };
 /// @brief A box of 1 x 2 x 3 with a name, its faces coloured one by one.
 void write_coloured_box(const std::string& name, const std::vector<Colour>& colours, const std::string& path);
+
+/// @brief These shapes side by side, nothing joined.
+TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes);
 
 TopoDS_Shape box(double x, double y, double z, Point at = {});
 TopoDS_Shape cylinder(double radius, double height);

@@ -54,7 +54,7 @@ TEST_P(SharedCad, D1_S11_has_a_valid_grid_on_the_geometry) {
   const Options usual;
   BrepGridReport report;
   const auto size = geometry_sizes(brep, look_at_brep(brep, context), usual, nullptr, context);
-  const double hmin = accuracy_numbers("").hmin_share * measure_extent(brep);
+  const double hmin = accuracy_numbers("").hmin_share * measure_extent(brep).body;
   const Model model = grid_brep(brep, *size, {.least_size = hmin, .bridge_below = hmin}, report, context);
   const SurfaceReport facts = check_surface(model, context);
   EXPECT_EQ(facts.can_bound_volume, expected.is_closed);
