@@ -69,7 +69,8 @@ def run(command, timeout):
         raise Problem(f"{os.path.basename(command[0])}: more than {timeout} s") from e
     if done.returncode != 0:
         said = done.stderr.strip().splitlines() or done.stdout.strip().splitlines() or [""]
-        raise Problem(f"{os.path.basename(command[0])}: exit {done.returncode}: {said[-1]}")
+        told = [line for line in said if "error:" in line] or said[-1:]
+        raise Problem(f"exit {done.returncode}: {told[0].split('error: ')[-1]}")
 
 
 def read_json(path):
