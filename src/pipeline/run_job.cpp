@@ -209,6 +209,7 @@ void grid_smooth(Run& run, Model& model) {
   std::vector<NamedMesh> fine = run.inputs;
   for (const GeometryInput& smooth : run.smooth) {
     std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, smooth.look, options, asked, run.context);
+    refuse_too_many_triangles(smooth.look.grid, *size, options.refine.levels, run.context);
     GeometryGrid made{options.input.files[smooth.input], {}};
     if (options.refine.levels == 0) {
       run.inputs[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
