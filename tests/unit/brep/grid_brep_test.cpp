@@ -157,7 +157,7 @@ TEST(GridBrep, AFaceFarFromOneThatFailsKeepsItsGridWhileThatIsDoneAgain) {
 }
 
 TEST(GridBrep, SidesOfOneEdgeHaveALimit) {
-  EXPECT_THROW(grid(make_cylinder({}, 1, 2), UniformSize(1e-10)), LimitError);
+  EXPECT_THROW(grid(make_cylinder({}, 1, 2), LinearSize(1e-10, 1, {}, 0, 1)), LimitError);
 }
 
 TEST(GridBrep, NoMoreRoundsThanAskedFor) {
