@@ -67,6 +67,13 @@ class SmoothGeometry(case.Case):
             self.expect(6, "mesh", "ball.geom.toml", "-o", "ball.vtu", "--hmax", "1e-3", *limit, says=says)
         self.assertEqual(self.files(), ["ball.geom.toml"])
 
+    def test_shapes_that_cross_are_named(self):
+        for x in ("0.8", "0"):  # the second: the same twice
+            self.write("balls.geom.toml", '[[shape]]\ntype = "sphere"\nname = "left"\nradius = 1\n'
+                       f'[[shape]]\ntype = "sphere"\nname = "right"\nradius = 1\norigin = [{x}, 0, 0]\n')
+            self.expect(3, "mesh", "balls.geom.toml", "-o", "balls.vtu", says=["left", "right", "cross or touch"])
+            self.assertEqual(self.files(), ["balls.geom.toml", "balls_defects.vtp"])
+
     def test_faces_are_selected_by_number_and_normal(self):
         self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
         job = """[input]
