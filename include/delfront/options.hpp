@@ -51,6 +51,7 @@ struct DomainOptions {
   std::vector<Point> keep_points;  ///< seeds: only the regions that hold one of these
 };
 
+/// @brief A boundary of the grid, and what it is made of; one way to select, at most.
 struct BoundaryOptions {
   std::string name;                       ///< table key: boundaries.<name>
   std::string select;                     ///< name pattern with * and ?; empty: the patch of that name
@@ -58,6 +59,15 @@ struct BoundaryOptions {
   std::string set_at = {};                ///< as Options::set_at
   std::vector<std::uint32_t> faces = {};  ///< of smooth geometry, from 1 as `info` counts them
   std::optional<Point> normal = {};       ///< faces of smooth geometry that look this way all over, within 5 degrees
+  std::vector<std::string> colours = {};  ///< faces of a CAD file that have one of them, RRGGBB in capitals
+  std::optional<Box> box = {};            ///< faces of smooth geometry that lie in it, model units
+  std::vector<Point> near = {};           ///< faces of smooth geometry that are nearest to these places
+  std::string expression = {};            ///< faces of smooth geometry where this formula in x, y, z is true all over
+
+  /// @brief Whether faces of smooth geometry are selected, rather than patches by name.
+  bool selects_faces() const {
+    return !faces.empty() || normal || !colours.empty() || box || !near.empty() || !expression.empty();
+  }
 };
 
 /// @brief Sizes by formulas in x, y, z, pi, e and distance("name") (S2); empty: not asked for.

@@ -202,7 +202,9 @@ class TextBuilder {
         parts.push_back({{EdgeId(e), parameter_curve(use, e, surface), use.is_reversed}, use.edge});
       }
       try {
-        face.loops.push_back(place_loop(brep_, *surface, std::move(parts), !face.loops.empty()));
+        std::vector<BrepUse> placed = place_loop(brep_, *surface, std::move(parts), !face.loops.empty());
+        if (!face.loops.empty()) move_hole_into(brep_, *surface, face.loops[0], placed);
+        face.loops.push_back(std::move(placed));
       } catch (const InputError& e) {
         throw InputError(fmt::format("loop {}: {}", face.loops.size() + 1, e.what()), e.places);
       }

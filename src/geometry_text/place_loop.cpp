@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kSame = 1e-6;  ///< of the loop's extent in the parameter plane, or of a period
 constexpr int kSamples = 16;
+constexpr int kOutline = 64;  ///< places along each edge, to tell what is inside a loop
 
 /// Which side of the box is a pole, seen from a place on it: how the anticlockwise way along it runs.
 struct PoleSide {
@@ -172,7 +173,64 @@ class LoopPlacer {
   Point at_;
 };
 
+/// Places along a loop, in its order.
+std::vector<Point2> outline(const Brep& brep, const std::vector<BrepUse>& loop) {
+  std::vector<Point2> places;
+  for (const BrepUse& use : loop) {
+    const auto& range = brep.edges[use.edge].range;
+    for (int k = 0; k < kOutline; ++k) {
+      const double f = double(use.is_reversed ? kOutline - k : k) / kOutline;
+      places.push_back(use.curve->at(range[0] + (range[1] - range[0]) * f));
+    }
+  }
+  return places;
+}
+
+/// Whether the line to the right of a place crosses the polygon an odd number of times.
+bool is_inside(const std::vector<Point2>& polygon, Point2 p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Point2 a = polygon[i], b = polygon[j];
+    if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+  }
+  return inside;
+}
+
+/// Whole periods from which a middle comes to lie between low and high; 0 alone where there is no period.
+std::vector<double> moves_into(double low, double high, double middle, double period) {
+  std::vector<double> moves = {0};
+  if (period > 0)
+    for (double k = std::ceil((low - middle) / period); k <= std::floor((high - middle) / period); ++k)
+      if (k != 0) moves.push_back(k * period);
+  return moves;
+}
+
+Box box_of(const std::vector<Point2>& places) {
+  Box box;
+  for (const Point2 p : places) box.add(Point{p.x, p.y, 0});
+  return box;
+}
+
 }  // namespace
+
+void move_hole_into(const Brep& brep, const SmoothSurface& surface, const std::vector<BrepUse>& outer,
+                    std::vector<BrepUse>& hole) {
+  const std::vector<Point2> polygon = outline(brep, outer), places = outline(brep, hole);
+  const Box around = box_of(polygon);
+  const Point middle = box_of(places).centre();
+  Point2 best;
+  std::size_t most = 0;
+  for (const double u : moves_into(around.low.x, around.high.x, middle.x, surface.period()[0]))
+    for (const double v : moves_into(around.low.y, around.high.y, middle.y, surface.period()[1])) {
+      std::size_t inside = 0;
+      for (const Point2 p : places) inside += is_inside(polygon, {p.x + u, p.y + v});
+      if (inside <= most) continue;
+      most = inside;
+      best = {u, v};
+    }
+  if (best.x == 0 && best.y == 0) return;
+  for (BrepUse& use : hole) use.curve = move_parameter_curve(use.curve, best);
+}
 
 std::vector<BrepUse> place_loop(Brep& brep, const SmoothSurface& surface, std::vector<LoosePart> parts, bool is_hole) {
   return LoopPlacer(brep, surface, std::move(parts)).run(is_hole);

@@ -18,4 +18,8 @@ struct LoosePart {
 /// @throws InputError  it does not close; what and where, without the file's place
 std::vector<BrepUse> place_loop(Brep& brep, const SmoothSurface& surface, std::vector<LoosePart> parts, bool is_hole);
 
+/// @brief Moved by whole periods so that it lies within the outer loop; left where it is if none does that.
+void move_hole_into(const Brep& brep, const SmoothSurface& surface, const std::vector<BrepUse>& outer,
+                    std::vector<BrepUse>& hole);
+
 }  // namespace delfront

@@ -113,10 +113,10 @@ void check_files(const Options& options) {
   if (options.surface.method == "delaunay" && smooth > 0 && smooth == options.input.files.size())
     throw usage_error(options, "surface.method", "delaunay is for facets; smooth geometry takes mapped or front");
   for (const BoundaryOptions& boundary : options.boundaries)
-    if ((!boundary.faces.empty() || boundary.normal) && smooth != 1)
+    if (boundary.selects_faces() && smooth != 1)
       throw usage_error(options, "boundaries." + boundary.name + ".select",
-                        "faces are selected by id or normal in one file of smooth geometry (CAD, .geom.toml); facets "
-                        "and several files are selected by name");
+                        "faces are selected in one file of smooth geometry (CAD, .geom.toml); facets and several files "
+                        "are selected by name");
   if (options.surface.method == "mapped" && smooth == 0)
     throw usage_error(
         options, "surface.method",

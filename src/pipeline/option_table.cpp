@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "delfront/errors.hpp"
+#include "pipeline/boundary_options.hpp"
 #include "pipeline/option_rows.hpp"
 #include "pipeline/quantities.hpp"
 #include "pipeline/size_options.hpp"
@@ -263,72 +264,6 @@ std::vector<OptionRow> build_table() {
 
 const std::vector<OptionRow>& option_table() {
   static const std::vector<OptionRow> table = build_table();
-  return table;
-}
-
-static void select_boundary(BoundaryOptions& b, const JobValue& v) {
-  if (!v.is(JobValue::Kind::table)) {
-    b.select = as_text(v);
-    return;
-  }
-  if (v.items.size() != 1) throw BadValue("got " + describe(v));
-  if (const JobValue* name = v.find("name")) {
-    b.select = as_text(*name);
-  } else if (const JobValue* id = v.find("id")) {
-    const std::vector<JobValue> numbers = id->is(JobValue::Kind::list) ? id->items : std::vector{*id};
-    for (const JobValue& number : numbers) {
-      const std::uint64_t face = as_count(number);
-      if (face == 0 || face > 0xffffffffu) throw BadValue("faces are counted from 1; got " + describe(number));
-      b.faces.push_back(static_cast<std::uint32_t>(face));
-    }
-    if (numbers.empty()) throw BadValue("an empty list selects no face");
-  } else if (const JobValue* normal = v.find("normal")) {
-    const Point n = as_point(*normal);
-    if (!(length(n) > 0)) throw BadValue("a normal of no length looks nowhere");
-    b.normal = n;
-  } else {
-    throw BadValue(fmt::format("selecting by '{}' is{}", v.names[0], planned_note("boundaries.*.select.id").substr(1)));
-  }
-}
-
-static JobValue boundary_selector(const BoundaryOptions& b) {
-  JobValue value = JobValue::table();
-  JobValue list = JobValue::list();
-  if (!b.faces.empty()) {
-    for (const std::uint32_t face : b.faces) list.items.push_back(JobValue::of(std::int64_t(face)));
-    value.add("id", list);
-  } else if (b.normal) {
-    for (const double x : {b.normal->x, b.normal->y, b.normal->z}) list.items.push_back(JobValue::of(x));
-    value.add("normal", list);
-  } else if (b.select.empty()) {
-    return JobValue();
-  } else {
-    value.add("name", JobValue::of(b.select));
-  }
-  return value;
-}
-
-static EntryTable boundary_table() {
-  static const std::vector<std::string> kinds = {"wall",     "patch", "inlet", "outlet", "farfield",
-                                                 "symmetry", "empty", "wedge", "cyclic", "interface"};
-  const auto boundaries = [](auto& o) -> auto& { return o.boundaries; };
-  EntryTable table = named_table<BoundaryOptions>("boundaries", boundaries);
-  table.note = [](Options& o, std::size_t i, const std::string& name, const std::string& place) {
-    BoundaryOptions& boundary = o.boundaries[i];
-    if (name == "select" || boundary.set_at.empty()) boundary.set_at = place;
-  };
-  add_entry<BoundaryOptions>(
-      table, boundaries,
-      {"select", Takes::select,
-       "which patches it is made of, by name with * and ?; by default the one of its own name; of smooth geometry also "
-       "faces by number (as info counts them), or those that look one way",
-       "a name, { name = \"wing*\" }, { id = 3 }, { id = [3, 4] } or { normal = [0, -1, 0] }"},
-      select_boundary, boundary_selector);
-  add_entry<BoundaryOptions>(
-      table, boundaries,
-      {"kind", Takes::text, "what kind of boundary it is", fmt::format("one of {}", fmt::join(kinds, ", "))},
-      [](BoundaryOptions& b, const JobValue& v) { b.kind = as_choice(v, kinds); },
-      [](const BoundaryOptions& b) { return text_value(b.kind); });
   return table;
 }
 

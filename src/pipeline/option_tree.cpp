@@ -348,7 +348,7 @@ std::string planned_note(const std::string& key_or_flag) {
   static const std::set<std::string> planned = {
       "input.heal",
       "domain.keep.seeds",
-      "boundaries.*.select.id",
+      "boundaries.*.select.stl_solid",
       "layers",
       "surface.elements",
       "volume.elements",

@@ -77,13 +77,13 @@ void read_smooth(Run& run, const std::string& path) {
   {
     const StageTimer timer(run.context, "read");
     smooth.brep = read_brep(path, run.context, cad);
-    name_selected_faces(run.options.boundaries, path, smooth.brep);
   }
   Options& options = run.options;  // several files might differ in their units
   if (options.input.units == "auto" && options.input.files.size() == 1 && metres_per_unit(cad.unit) > 0)
     options.input.units = cad.unit;
   const StageTimer timer(run.context, "look");
   smooth.look = look_at_brep(smooth.brep, run.context);
+  name_selected_faces(run.options.boundaries, path, cad, smooth);
   run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
   run.smooth.push_back(std::move(smooth));
 }

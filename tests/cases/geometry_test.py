@@ -98,6 +98,51 @@ report = "room.json"
         self.write("room.toml", job.replace("[0, 0, -2]", "[1, 1, 1]"))
         self.expect(2, "mesh", "room.toml", says=["room.toml:4", "boundaries.floor", "no face", "looks along (1, 1, 1)"])
 
+    def select(self, *selectors, code=0, says=()):
+        """Boundaries of a room of 1 x 2 x 3, by selectors. @return names and triangles of what comes out"""
+        self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
+        job = '[input]\nfiles = ["room.geom.toml"]\n[output]\nfiles = ["room.vtu"]\nreport = "room.json"\n'
+        for name, selector in selectors:
+            job += f"[boundaries.{name}]\nselect = {selector}\n"
+        self.write("room.toml", job)
+        self.expect(code, "mesh", "room.toml", "--stop-after", "surface", says=says)
+        return {group["name"] for group in self.report("room.json")["boundaries"]} if code == 0 else None
+
+    def test_faces_are_selected_by_box(self):
+        low = "{ box = { min = [0, 0, 0], max = [1, 2, 0] } }"  # a face in the box's sides lies in it
+        self.assertEqual(self.select(("floor", low), ("ends", "{ box = { min = [-1, -1, -1], max = [0.5, 3, 4] } }")),
+                         {"floor", "ends", "room_x_high", "room_y_low", "room_y_high", "room_z_high"})
+        self.assertEqual(self.select(("all", "{ box = { min = [-1, -1, -1], max = [9, 9, 9] } }")), {"all"})
+        self.select(("floor", "{ box = { min = [0, 0, 0], max = [1, 1.5, 0.5] } }"), code=2,
+                    says=["room.toml:7", "boundaries.floor: no face of room.geom.toml lies in the box",
+                          "face 5 ('room_z_low') comes nearest to that: it reaches from (0, 0, 0) to (1, 2, 0)"])
+        self.select(("floor", "{ box = { min = [0, 0, 0], max = [1, -1, 0] } }"), code=2, says="0 to -1 along y")
+        self.select(("floor", "{ box = { min = [0, 0, 0], mx = [1, 1, 0] } }"), code=2, says="did you mean 'max'")
+        self.select(("floor", "{ box = { min = [0, 0, 0] } }"), code=2, says="a box has two corners")
+
+    def test_faces_are_selected_by_the_nearest_place(self):
+        self.assertEqual(self.select(("top", "{ near = [0.4, 1, 3.5] }"), ("ends", "{ near = [[0, 1, 1], [1.1, 1, 1]] }")),
+                         {"top", "ends", "room_y_low", "room_y_high", "room_z_low"})
+        self.select(("top", "{ near = [0, 1, 3] }"), code=2, says=["(0, 1, 3) is as near to face 1 ('room_x_low') as to"])
+        self.select(("top", "{ near = [400, 1000, 3000] }"), code=2, says=["farther than that is wide", "unit"])
+
+    def test_faces_are_selected_by_a_formula(self):
+        self.assertEqual(self.select(("floor", '{ expression = "z < 0.1" }'), ("wide", '{ expression = "abs(x - 0.5) == 0.5" }')),
+                         {"floor", "wide", "room_y_low", "room_y_high", "room_z_high"})
+        self.select(("floor", '{ expression = "z < -1" }'), code=2,
+                    says=["room.toml:7", "'z < -1' is true all over no face", "it is true nowhere"])
+        self.select(("floor", '{ expression = "z > 1" }'), ("low", '{ expression = "z < 2 && x < 1 && y > 1" }'), code=2,
+                    says=["boundaries.low", "comes nearest to that, with "])
+        self.select(("floor", '{ expression = "zz < 1" }'), code=2, says=["room.toml:7", "boundaries.floor", "zz"])
+
+    def test_ways_to_select_that_are_none(self):
+        self.select(("floor", "{ bax = [0, 0, 0] }"), code=2, says=["nothing is selected by 'bax'", "did you mean 'box'"])
+        self.select(("floor", '{ stl_solid = "a" }'), code=2, says="not in this version")
+        self.select(("floor", '{ name = "room_z_low", id = 2 }'), code=2, says="room.toml:7")
+        self.write("cube.stl", case.stl_binary(case.box_triangles()))
+        self.expect(2, "mesh", "cube.stl", "-o", "a.vtu", "--set", "boundaries.a.select={ near = [0, 0, 0] }",
+                    says="faces are selected in one file of smooth geometry")
+
     def test_convert_says_what_grids_it(self):
         self.write("ball.geom.toml", BALL)
         self.expect(2, "convert", "ball.geom.toml", "ball.stl", says="delfront mesh ball.geom.toml -o ball.stl --stop-after")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "delfront/geometry_text.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -160,6 +161,43 @@ TEST(GeometryText, LoopsMayRunEitherWayAndBeginAnywhere) {
     std::string turned = text;
     turned.replace(turned.find(given), given.size(), other);
     expect_solid(turned, 0.1, kPi / 2);
+  }
+}
+
+/// A can with a round hole in its side, at an angle, and a lid of another, equal cylinder in it.
+std::string can_with_a_lid(double angle) {
+  std::string uv;
+  for (int i = 0; i <= 32; ++i) {
+    const double a = 2 * kPi * (i % 32) / 32;
+    uv += fmt::format("{}[{}, {}]", i > 0 ? ", " : "", angle + 0.4 * std::cos(a), 1 + 0.3 * std::sin(a));
+  }
+  std::string text = kCan;
+  const std::string loop = R"(["bottom ring", "seam", "-top ring", "-seam"])";
+  text.replace(text.find(loop), loop.size(), loop + ", [\"hole\"]");
+  return text + fmt::format(R"(
+[[surface]]
+name = "same"
+type = "cylinder"
+radius = 0.5
+
+[[edge]]
+name = "hole"
+type = "on"
+surface = "same"
+uv = [{}]
+
+[[face]]
+name = "lid"
+surface = "same"
+loops = [["hole"]]
+)",
+                            uv);
+}
+
+TEST(GeometryText, HolesLieWithinTheOuterLoopWhateverTheirPeriod) {
+  for (const double angle : {-9.0, -2.0, 0.5, 1.5, 3.0, 4.7, 5.8, 8.0}) {
+    SCOPED_TRACE(angle);
+    expect_solid("tolerance = 1e-4\n" + can_with_a_lid(angle), 0.1, kPi / 2);
   }
 }
 

@@ -339,6 +339,10 @@ Options unusual_options() {
   set_option(o, "boundaries.wing.kind", "wall");
   set_option(o, "boundaries.tip.select", "{ id = [3, 4] }");
   set_option(o, "boundaries.root.select", "{ normal = [0, -1, 0] }");
+  set_option(o, "boundaries.red.select", "{ colour = ['#ff0000', 'colour_00FF00'] }");
+  set_option(o, "boundaries.low.select", "{ box = { min = [0, -1, 0], max = [1, 2.5, 0] } }");
+  set_option(o, "boundaries.ends.select", "{ near = [[0, 1, 2], [3, 4, 5]] }");
+  set_option(o, "boundaries.below.select", "{ expression = 'z < 0.1' }");
   set_option(o, "size.on.'le*'.h", "0.5%");
   set_option(
       o, "size.source",
@@ -356,6 +360,21 @@ Options unusual_options() {
       "0], [1, 2]] }]");
   o.boundaries.push_back({"two words.", "", "inlet"});
   return o;
+}
+
+TEST(Boundaries, a_selector_set_again_forgets_the_one_before) {
+  Options o;
+  set_option(o, "boundaries.wing.kind", "wall");
+  for (const char* selector : {"{ id = [3, 4] }", "{ box = { min = [0, 0, 0], max = [1, 1, 1] } }",
+                               "{ near = [0, 0, 1] }", "{ colour = 'ff8000' }"})
+    set_option(o, "boundaries.wing.select", selector);
+  ASSERT_EQ(o.boundaries.size(), 1u);
+  const BoundaryOptions& b = o.boundaries[0];
+  EXPECT_EQ(b.colours, std::vector<std::string>{"FF8000"});
+  EXPECT_TRUE(b.faces.empty() && !b.box && b.near.empty() && b.select.empty());
+  EXPECT_EQ(b.kind, "wall");
+  set_option(o, "boundaries.wing.select", "OML*");
+  EXPECT_FALSE(o.boundaries[0].selects_faces());
 }
 
 TEST(PrintConfig, read_back_gives_the_same_options) {
