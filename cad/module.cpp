@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "fmt/format.h"
-#include "part.hpp"
+#include "translation.hpp"
 
 namespace delfront::cad {
 namespace {
@@ -40,8 +40,8 @@ void work(const Request& request, Result& result) {
   say("reading", -1);
   Part part = read_file(request.path, say);
   heal(part, request.options, say);
-  if (request.options.imprints) imprint(part, say);
-  translate(part, result, say);
+  Translation data = request.options.imprints ? join(part, say) : translate(part, say);
+  finish(part, std::move(data), result);
 }
 
 Result* read(const Request* request) {

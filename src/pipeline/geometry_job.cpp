@@ -136,21 +136,30 @@ BrepGoals geometry_goals(const Options& options, const BrepExtent& extent) {
   return goals;
 }
 
-Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
-                   BrepGridReport& report) {
-  return surface_mesh(grid_brep(brep, size, gridding_options(options, measure_extent(brep)), report, context));
+NamedMesh named_surface(const Model& grid, const Brep& brep, const std::string& stem) {
+  NamedMesh named{surface_mesh(grid), stem, brep.regions, {}};
+  if (brep.regions.empty()) return named;
+  for (const std::uint32_t face : grid.input_face)
+    named.sides.push_back(brep.faces[FaceId(std::size_t(face))].regions);
+  return named;
 }
 
-Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
-                            Context& context, BrepRounds& report) {
-  return surface_mesh(grid_brep_to_goals(input.brep, std::move(size), gridding_options(options, input.look.extent),
-                                         geometry_goals(options, input.look.extent), report, context));
+Model grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
+                    BrepGridReport& report) {
+  return grid_brep(brep, size, gridding_options(options, measure_extent(brep)), report, context);
+}
+
+Model grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
+                             Context& context, BrepRounds& report) {
+  return grid_brep_to_goals(input.brep, std::move(size), gridding_options(options, input.look.extent),
+                            geometry_goals(options, input.look.extent), report, context);
 }
 
 Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report) {
   const Options usual;
   const BrepLook look = look_at_brep(brep, context);
-  return grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report);
+  return surface_mesh(
+      grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report));
 }
 
 bool is_smooth_file(const std::string& path) { return is_geometry_file(path) || is_cad_file(path); }

@@ -35,12 +35,15 @@ BrepGoals geometry_goals(const Options& options, const BrepExtent& extent);
 /// @brief A grid of the sizes that are usual: to look at the geometry.
 Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report);
 
-/// @brief grid_brep() by options.surface.method, as a surface mesh with the names of faces, edges and corners.
-Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
+/// @brief A grid of smooth geometry as an input: with the names of faces, edges and corners, and what the faces bound.
+NamedMesh named_surface(const Model& grid, const Brep& brep, const std::string& stem);
+
+/// @brief grid_brep() by options.surface.method.
+Model grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
                    BrepGridReport& report);
 
 /// @brief The same by grid_brep_to_goals().
-Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
+Model grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
                             Context& context, BrepRounds& report);
 
 /// @brief Whether a file holds smooth geometry: as text (.geom.toml) or from CAD (.step, .iges, …).

@@ -84,7 +84,7 @@ void read_smooth(Run& run, const std::string& path) {
     options.input.units = cad.unit;
   const StageTimer timer(run.context, "look");
   smooth.look = look_at_brep(smooth.brep, run.context);
-  run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
+  run.inputs.push_back(named_surface(smooth.look.grid, smooth.brep, stem_of(path)));
   run.smooth.push_back(std::move(smooth));
 }
 
@@ -210,14 +210,17 @@ void grid_smooth(Run& run, Model& model) {
   for (const GeometryInput& smooth : run.smooth) {
     std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, smooth.look, options, asked, run.context);
     GeometryGrid made{options.input.files[smooth.input], {}};
+    const auto named = [&](const Model& grid) {
+      return named_surface(grid, smooth.brep, run.inputs[smooth.input].stem);
+    };
     if (options.refine.levels == 0) {
-      run.inputs[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+      run.inputs[smooth.input] = named(grid_geometry_to_goals(smooth, size, options, run.context, made.rounds));
     } else {
       BrepGridReport coarse;
       if (run.geometry.points.empty())
-        fine[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+        fine[smooth.input] = named(grid_geometry_to_goals(smooth, size, options, run.context, made.rounds));
       size = coarse_sizes(std::move(size), options, model.bounding_box(), run.context);
-      run.inputs[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, coarse);
+      run.inputs[smooth.input] = named(grid_geometry(smooth.brep, *size, options, run.context, coarse));
     }
     log_rounds(made, run.context);
     if (!made.rounds.rounds.empty()) run.result.geometry.push_back(std::move(made));
