@@ -26,12 +26,12 @@ struct Segment {
 };
 
 struct Outline {
-  Box box;                        ///< with the tolerance
+  Box box;  ///< with the tolerance
   double tolerance = 0;
-  bool is_plane = false;          ///< flat
-  bool is_polygon = false;        ///< with straight edges alone
-  Point origin, normal;           ///< of the plane
-  std::vector<Segment> segments;  ///< of straight edges
+  bool is_plane = false;            ///< flat
+  bool is_polygon = false;          ///< with straight edges alone
+  Point origin, normal;             ///< of the plane
+  std::vector<Segment> segments;    ///< of straight edges
   std::vector<int> corners, edges;  ///< ascending
 };
 
@@ -79,7 +79,8 @@ class Pair {
     std::vector<int> edges;
     std::set_intersection(f_.corners.begin(), f_.corners.end(), g_.corners.begin(), g_.corners.end(),
                           std::back_inserter(corners_));
-    std::set_intersection(f_.edges.begin(), f_.edges.end(), g_.edges.begin(), g_.edges.end(), std::back_inserter(edges));
+    std::set_intersection(f_.edges.begin(), f_.edges.end(), g_.edges.begin(), g_.edges.end(),
+                          std::back_inserter(edges));
     for (const Segment& s : f_.segments)
       if (std::binary_search(edges.begin(), edges.end(), s.edge)) segments_.push_back(s);
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several solids and sheets. What coincides as it is becomes one by hashing (merge_common.cpp); those that touch or cross
-// elsewhere go, in groups, through the general fuse: faces are cut by each other, and the common part is one face of
-// both. Where solids overlap, what they have in common becomes a solid of its own.
+// Several solids and sheets. What coincides as it is becomes one by hashing (merge_common.cpp); those that touch or
+// cross elsewhere go, in groups, through the general fuse: faces are cut by each other, and the common part is one face
+// of both. Where solids overlap, what they have in common becomes a solid of its own.
 #include <BOPAlgo_Builder.hxx>
 #include <BRepTools_History.hxx>
-#include <TopExp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Standard_Failure.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>

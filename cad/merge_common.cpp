@@ -12,9 +12,9 @@
 namespace delfront::cad {
 namespace {
 
-constexpr double kMostShare = 1e-6;    ///< of the diagonal: what tolerances count at most
-constexpr double kRounding = 1e-13;    ///< of the diagonal: what they count at least
-constexpr double kSameStep = 1e-12;    ///< parameters that run on as before
+constexpr double kMostShare = 1e-6;  ///< of the diagonal: what tolerances count at most
+constexpr double kRounding = 1e-13;  ///< of the diagonal: what they count at least
+constexpr double kSameStep = 1e-12;  ///< parameters that run on as before
 
 bool have_common(const std::vector<int>& a, const std::vector<int>& b) {
   return std::any_of(a.begin(), a.end(), [&](int p) { return std::find(b.begin(), b.end(), p) != b.end(); });
@@ -124,7 +124,8 @@ class Merger {
   /// Sheets beside sheets stay as they are.
   bool may_merge(const std::vector<int>& a, const std::vector<int>& b) const {
     const auto is_closed = [&](int p) { return bool(data_.is_closed[std::size_t(p)]); };
-    return !have_common(a, b) && (std::any_of(a.begin(), a.end(), is_closed) || std::any_of(b.begin(), b.end(), is_closed));
+    return !have_common(a, b) &&
+           (std::any_of(a.begin(), a.end(), is_closed) || std::any_of(b.begin(), b.end(), is_closed));
   }
 
   double reach(double a, double b) const {
@@ -201,7 +202,8 @@ class Merger {
       if (edge.curve.kind == CurveData::Kind::none || edge.corners[0] < 0 || edge.corners[1] < 0) continue;
       const auto [low, high] = std::minmax(edge.corners[0], edge.corners[1]);
       std::vector<int>& known = between[std::uint64_t(std::uint32_t(low)) << 32 | std::uint32_t(high)];
-      const auto same = std::find_if(known.begin(), known.end(), [&](int r) { return is_same_edge(e, std::size_t(r)); });
+      const auto same =
+          std::find_if(known.begin(), known.end(), [&](int r) { return is_same_edge(e, std::size_t(r)); });
       if (same == known.end())
         known.push_back(int(e));
       else

@@ -4,8 +4,10 @@
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <Standard_Version.hxx>
 #include <mutex>
+#include <new>
 
 #include "fmt/format.h"
 #include "translation.hpp"
@@ -33,6 +35,11 @@ class Silence {
   Message_SequenceOfPrinters printers_;
 };
 
+constexpr const char* kNoMemory =
+    "reading it takes more memory than there is; a number in the file that counts something is probably damaged: "
+    "export "
+    "it again, or part by part";
+
 void work(const Request& request, Result& result) {
   const Say say = [&](const char* what, double fraction) {
     if (request.progress && !request.progress(request.user, what, fraction)) throw Stopped();
@@ -55,6 +62,10 @@ Result* read(const Request* request) {
     result->ending = Result::Ending::stopped;
   } catch (const Failure& e) {
     result->error = e.what();
+  } catch (const std::bad_alloc&) {
+    result->error = kNoMemory;
+  } catch (const Standard_OutOfMemory&) {
+    result->error = kNoMemory;
   } catch (const Standard_Failure& e) {
     result->error = fmt::format("OpenCASCADE could not read it: {} {}", e.DynamicType()->Name(),
                                 e.GetMessageString() ? e.GetMessageString() : "");

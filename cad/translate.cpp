@@ -215,15 +215,30 @@ void add_regions(const Part& part, const Translation& data, Result& result) {
 }
 
 /// Edges that one face has, and only once: the surface is open there.
-std::size_t count_free_edges(const std::vector<Face>& faces, const std::vector<Edge>& edges) {
-  std::vector<int> uses(edges.size());
-  for (const Face& face : faces)
-    for (const auto& loop : face.loops)
-      for (const Use& use : loop) ++uses[std::size_t(use.edge)];
-  std::size_t count = 0;
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    count += uses[e] == 1 && edges[e].curve.kind != CurveData::Kind::none;
-  return count;
+void note_free_edges(const Translation& data, CadReport& report) {
+  constexpr std::size_t kMost = 1000;
+  std::vector<int> uses(data.edges.size());
+  std::vector<std::size_t> face_of(data.edges.size());
+  for (std::size_t f = 0; f < data.faces.size(); ++f)
+    for (const auto& loop : data.faces[f].loops)
+      for (const Use& use : loop) {
+        ++uses[std::size_t(use.edge)];
+        face_of[std::size_t(use.edge)] = f;
+      }
+  for (std::size_t e = 0; e < data.edges.size(); ++e) {
+    if (uses[e] != 1 || data.edges[e].curve.kind == CurveData::Kind::none) continue;
+    if (++report.free_edges > kMost) continue;
+    const auto& places = data.samples[e];
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < places.size(); ++i) length += distance(places[i], places[i + 1]);
+    length *= double(kEdgeSamples + 1) / (kEdgeSamples - 1);  // the ends are no samples
+    const Point at = places[kEdgeSamples / 2];
+    report.open_at.push_back({"free_edge",
+                              fmt::format("edge {}, about {:.3g} long, bounds face {} only; its middle is at ({:g}, "
+                                          "{:g}, {:g})",
+                                          e + 1, length, face_of[e] + 1, at.x, at.y, at.z),
+                              at});
+  }
 }
 
 }  // namespace
@@ -247,10 +262,10 @@ void finish(Part& part, Translation data, Result& result) {
   report.internal_edges += data.internal_edges;
   report.largest_tolerance = largest_tolerance(part.shape);
   report.suspicious.insert(report.suspicious.end(), data.suspicious.begin(), data.suspicious.end());
+  note_free_edges(data, report);
   result.vertices = std::move(data.vertices);
   result.edges = std::move(data.edges);
   result.faces = std::move(data.faces);
-  report.free_edges = count_free_edges(result.faces, result.edges);
   add_regions(part, data, result);
   result.report = std::move(report);
 }

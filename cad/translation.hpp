@@ -20,8 +20,8 @@ TopTools_IndexedMapOfShape pieces_of(const TopoDS_Shape& shape);
 struct Translation {
   /// What a face belongs to.
   struct Owners {
-    std::vector<int> pieces;             ///< by their place in pieces_of, from 0
-    std::array<int, 2> solids{-1, -1};   ///< the one behind the face, whose normal points out of it, and the one ahead
+    std::vector<int> pieces;            ///< by their place in pieces_of, from 0
+    std::array<int, 2> solids{-1, -1};  ///< the one behind the face, whose normal points out of it, and the one ahead
   };
 
   std::vector<Vertex> vertices;

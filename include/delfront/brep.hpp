@@ -125,10 +125,10 @@ struct BrepFace {
   std::shared_ptr<const SmoothSurface> surface;
   bool is_reversed = false;  ///< its triangles face against the surface's normal
   std::vector<std::vector<BrepUse>> loops;
-  std::string name;      ///< faces of one name are one patch of Model
-  std::string kind;      ///< of the patch: "wall", …
-  std::array<RegionId, 2> regions{};  ///< behind it, out of which its triangles face, and ahead of it; invalid: none, or
-                                      ///< not known
+  std::string name;                   ///< faces of one name are one patch of Model
+  std::string kind;                   ///< of the patch: "wall", …
+  std::array<RegionId, 2> regions{};  ///< behind it, out of which its triangles face, and ahead of it; invalid: none,
+                                      ///< or not known
   double tolerance = 0;  ///< between the surface and its edges; below the Brep's: that
 };
 

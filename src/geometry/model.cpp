@@ -54,7 +54,7 @@ class ModelBuilder {
   std::set<VertexId> is_corner_;
   std::set<std::string> region_names_;
   std::map<std::string, std::size_t> region_number_;  // the last that a name has got
-  std::size_t first_region_ = 0;  // of the input being added
+  std::size_t first_region_ = 0;                      // of the input being added
   std::size_t num_repeated_lines_ = 0;
   std::size_t num_points_read_ = 0, num_faces_ = 0;
   std::size_t num_bad_ = 0;  // faces with a coordinate that is not finite …

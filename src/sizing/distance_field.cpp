@@ -126,7 +126,8 @@ SimplexSet named_part(const Model& model, const std::string& name) {
   for (std::size_t r = 0; r < model.regions.size(); ++r) {
     if (model.regions[RegionId(r)].name != name) continue;
     for (std::size_t t = 0; t < model.sides.size(); ++t)
-      if (const auto& [behind, ahead] = model.sides[TriangleId(t)]; behind == RegionId(r) || ahead == RegionId(r)) add(t);
+      if (const auto& [behind, ahead] = model.sides[TriangleId(t)]; behind == RegionId(r) || ahead == RegionId(r))
+        add(t);
     if (!set.triangles.empty()) return set;
     if (model.regions.size() > 1)
       throw UsageError(

@@ -134,14 +134,15 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
       if (colour != TetComplex::kOutside && is_far_field[model.patch_of_triangle[subface.triangle].index()])
         facts[colour].touches_far_field = true;
       if (colour != TetComplex::kOutside && subface.triangle.index() < model.sides.size())
-        ++votes[colour][model.sides[subface.triangle][is_front ? 1 : 0]];
+        if (const RegionId region = model.sides[subface.triangle][is_front ? 1 : 0]; region.is_valid())
+          ++votes[colour][region];
     }
   }
   decide_holes(facts, borders);
   for (std::size_t i = 0; i < votes.size(); ++i) {
     const auto most = std::max_element(votes[i].begin(), votes[i].end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most == votes[i].end() || !most->first.is_valid()) continue;
+    if (most == votes[i].end()) continue;
     facts[i].declared = most->first;
     facts[i].is_hole = facts[i].is_undecided = false;
   }

@@ -23,7 +23,7 @@ struct RegionFacts {
   bool is_hole = false;       ///< its shell's orientation opposes its parent's
   bool is_undecided = false;  ///< flips made that undecidable: taken as a region
   bool touches_far_field = false;
-  RegionId declared;  ///< which of the model's regions most of its faces say that it is; invalid: none of them
+  RegionId declared;  ///< which of the model's regions most of its faces say that it is; invalid: none says so
 };
 
 /// @brief Colour the tets by bounded component (0, 1, …; kOutside for what is not enclosed), by flood fill.

@@ -32,7 +32,7 @@ Made grid(const std::string& text, const Options& options = {}, int threads = 1)
   Made made;
   made.brep = brep_of(text);
   made.look = look_at_brep(made.brep, context);
-  GeometryInput input{0, made.brep, made.look};
+  GeometryInput input{0, {}, made.brep, made.look};
   const auto sizes = geometry_sizes(made.brep, made.look, options, nullptr, context);
   made.mesh = surface_mesh(grid_geometry_to_goals(input, sizes, options, context, made.rounds));
   return made;
