@@ -13,6 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShown = 40;       ///< entities of a kind on the terminal
+constexpr std::size_t kShownOpen = 8;    ///< free edges
 constexpr std::size_t kShownOfKind = 3;  ///< repairs and suspicious things of a kind
 
 double length_of(const BrepEdge& edge) {
@@ -47,6 +48,7 @@ Json cad_json(const CadReport& cad) {
           {"solids", cad.solids},
           {"shells", cad.shells},
           {"free_edges", cad.free_edges},
+          {"open_at", notes_json(cad.open_at)},
           {"internal_edges", cad.internal_edges},
           {"largest_tolerance", cad.largest_tolerance},
           {"repairs", notes_json(cad.repairs)},
@@ -67,6 +69,9 @@ void print_cad(const CadReport& cad) {
   fmt::print("CAD            {}, {} solid{}, {} shell{}{}\n", cad.format, cad.solids, cad.solids == 1 ? "" : "s",
              cad.shells, cad.shells == 1 ? "" : "s",
              cad.free_edges > 0 ? fmt::format(", open: {} free edges", cad.free_edges) : "");
+  for (std::size_t i = 0; i < std::min(kShownOpen, cad.open_at.size()); ++i)
+    fmt::print("open           {}\n", cad.open_at[i].message);
+  if (cad.free_edges > kShownOpen) fmt::print("               and {} more free edges\n", cad.free_edges - kShownOpen);
   fmt::print("unit           {}\n", cad.unit.empty() ? "the file does not say" : cad.unit);
   fmt::print("tolerance      up to {:.3g}\n", cad.largest_tolerance);
   if (cad.internal_edges > 0) fmt::print("left out       {} edges within faces\n", cad.internal_edges);
@@ -112,11 +117,12 @@ Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport
                  {"below_25", grid.below_25_deg},
                  {"largest_distance", grid.largest_distance},
                  {"largest_normal_angle", grid.largest_normal_angle_deg}}}};
+  if (!brep.regions.empty()) json["regions"] = brep.regions;
   if (!cad.format.empty()) json["cad"] = cad_json(cad);
   return json;
 }
 
-void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadReport& cad) {
+void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadReport& cad, bool is_quick) {
   std::size_t shown = 0, edges = 0;
   for (const BrepEdge& e : brep.edges) edges += !e.is_degenerate();
   if (!cad.format.empty()) print_cad(cad);
@@ -134,9 +140,13 @@ void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadRepor
     std::string what = face.kind.empty() ? "" : face.kind + ", ";
     if (f < cad.faces.size()) what += cad.faces[f].surface + ", ";
     if (f < cad.faces.size() && !cad.faces[f].colour.empty()) what += "colour " + cad.faces[f].colour + ", ";
-    fmt::print("face {:<9} {:<20} {}{} loop{}, {} triangles of usual size, angles from {:.1f} deg\n", f + 1, face.name,
-               what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles, made.min_angle_deg);
+    fmt::print("face {:<9} {:<20} {}{} loop{}, {} triangles {}, angles from {:.1f} deg\n", f + 1, face.name, what,
+               face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles,
+               is_quick ? "at a first look" : "of usual size", made.min_angle_deg);
   }
+  for (std::size_t r = 0; r < std::min(kShown, brep.regions.size()); ++r)
+    fmt::print("solid {:<8} {}\n", r + 1, brep.regions[r].empty() ? "has no name" : brep.regions[r]);
+  if (brep.regions.size() > kShown) fmt::print("               and {} more solids\n", brep.regions.size() - kShown);
   if (brep.faces.size() > kShown) fmt::print("               and {} more faces\n", brep.faces.size() - kShown);
 }
 

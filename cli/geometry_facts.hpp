@@ -9,8 +9,9 @@ namespace delfront::cli {
 
 /// @brief What smooth geometry consists of, as `info` says it: corners, edges and faces with names and tolerances, and
 /// of a CAD file its unit, what was mended and what is suspicious.
-/// @param cad  empty where it is no CAD file
+/// @param cad       empty where it is no CAD file
+/// @param is_quick  the grid is a coarse one
 nlohmann::ordered_json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport& cad);
-void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadReport& cad);
+void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadReport& cad, bool is_quick);
 
 }  // namespace delfront::cli

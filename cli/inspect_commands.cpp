@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,8 @@ void check_output(const std::string& path, const std::string& input) {
     throw UsageError(path + " is the input and would be overwritten; give the output another name");
 }
 
+constexpr std::size_t kManyFaces = 2000;  ///< of geometry whose usual grid would take long
+
 const char* yes_no(bool value) { return value ? "yes" : "no"; }
 
 /// What both commands do first: a file becomes a surface with its report, or a grid with its findings.
@@ -49,6 +52,7 @@ struct Inspected {
   CadReport cad;                  ///< of a CAD file
   Brep brep;                      ///< smooth geometry; the surface is then its grid of usual sizes
   BrepGridReport brep_grid;
+  bool is_quick = false;  ///< that grid is a coarse one: what is open or large need not be gridded to be told about
   bool is_usable() const { return is_grid || is_of_lines ? !has_errors(findings) : surface.can_bound_volume; }
 };
 
@@ -56,7 +60,9 @@ Inspected inspect(const std::string& path, const std::string& format, Context& c
   Inspected result;
   if (is_smooth_file(path)) {
     result.brep = read_brep(path, context, result.cad);
-    result.mesh = grid_to_look_at(result.brep, context, result.brep_grid);
+    result.is_quick = result.cad.free_edges > 0 || result.brep.faces.size() > kManyFaces;
+    with_file(path, doubt_of(result.cad),
+              [&] { result.mesh = grid_to_look_at(result.brep, result.is_quick, context, result.brep_grid); });
   } else {
     result.mesh = read_mesh(path, context, format);
   }
@@ -87,7 +93,9 @@ void print_surface_facts(const SurfaceReport& r) {
   fmt::print("closed         {}; manifold {}; oriented {}; can bound a volume {}\n", yes_no(r.is_closed),
              yes_no(r.is_manifold), yes_no(r.is_oriented), yes_no(r.can_bound_volume));
   fmt::print("area           {:.9g}\n", r.area);
-  if (r.is_closed) fmt::print("volume         {:.9g}\n", r.volume);
+  if (r.is_closed)
+    fmt::print("volume         {:.9g}{}\n", std::abs(r.volume),
+               r.volume < 0 ? ", inside out: its faces look inwards (they are turned for a grid)" : "");
   fmt::print("edges          {:.4g} to {:.4g}, mean {:.4g}\n", r.min_edge, r.max_edge, r.mean_edge);
   fmt::print("angles         of triangles from {:.3g} deg; between neighbours from {:.3g} deg\n", r.min_angle_deg,
              r.min_dihedral_deg);
@@ -96,10 +104,19 @@ void print_surface_facts(const SurfaceReport& r) {
   for (std::size_t i = 0; i < std::min(kShown, r.components.size()); ++i) {
     const SurfaceComponent& c = r.components[i];
     fmt::print("component {:<4} {} triangles, {}{}\n", i, with_commas(c.num_triangles),
-               c.is_closed ? fmt::format("closed, volume {:.6g}", c.signed_volume) : "open",
+               c.is_closed ? fmt::format("closed, volume {:.6g}{}", std::abs(c.signed_volume),
+                                         c.signed_volume < 0 ? ", faces look inwards" : "")
+                           : "open",
                c.inside_of >= 0 ? fmt::format(", inside component {}", c.inside_of) : "");
   }
   if (r.components.size() > kShown) fmt::print("               and {} more components\n", r.components.size() - kShown);
+}
+
+/// In which unit, and who says so.
+std::string coordinates_of(const Inspected& it) {
+  if (!it.cad.unit.empty()) return fmt::format("in {}, as the file says", it.cad.unit);
+  if (it.surface.likely_unit.empty()) return "in a unit that the file does not say";
+  return fmt::format("the file does not say the unit; probably {}", it.surface.likely_unit);
 }
 
 Json facts_json(const std::string& path, const Inspected& it) {
@@ -119,6 +136,7 @@ Json facts_json(const std::string& path, const Inspected& it) {
   } else {
     json["surface"] = to_json(it.surface);
     if (!it.brep.faces.empty()) json["geometry"] = geometry_json(it.brep, it.brep_grid, it.cad);
+    if (!it.cad.format.empty()) json["geometry"]["cad"]["coordinates"] = coordinates_of(it);
   }
   return json;
 }
@@ -230,15 +248,23 @@ class InfoCommand : public Command {
     if (terminal.verbosity() >= 0 && json_ != "-") print(it);
     if (!json_.empty()) write_json(json_, dump(facts_json(file_, it)));
     if (it.is_usable()) return static_cast<int>(ExitCode::done);
-    terminal.error(ExitCode::bad_input, fmt::format("{} cannot be used as it is; 'delfront check' shows where", file_),
-                   {});
+    terminal.error(ExitCode::bad_input, verdict(it), {});
     return static_cast<int>(ExitCode::bad_input);
   }
 
  private:
+  std::string verdict(const Inspected& it) const {
+    if (it.cad.free_edges == 0 || it.cad.solids > 0)
+      return fmt::format("{} cannot be used as it is; 'delfront check' shows where", file_);
+    return fmt::format(
+        "{} is an open sheet with {} free edge{}: it bounds no volume; its surface can be gridded (delfront mesh "
+        "--stop-after surface)",
+        file_, it.cad.free_edges, it.cad.free_edges == 1 ? "" : "s");
+  }
+
   void print(const Inspected& it) const {
     fmt::print("file           {}\n", file_);
-    if (!it.brep.faces.empty()) print_geometry(it.brep, it.brep_grid, it.cad);
+    if (!it.brep.faces.empty()) print_geometry(it.brep, it.brep_grid, it.cad, it.is_quick);
     print_mesh_facts(it.mesh);
     if (!it.is_grid && !it.is_of_lines) print_surface_facts(it.surface);
     if (it.is_grid && it.is_usable())

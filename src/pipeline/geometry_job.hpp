@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -15,6 +16,7 @@ namespace delfront {
 /// @brief An input of smooth geometry: which, what it holds, and its first grid.
 struct GeometryInput {
   std::size_t input = 0;
+  std::string doubt;  ///< what is suspicious about the file, a sentence; empty: nothing
   Brep brep;
   BrepLook look;
 };
@@ -33,15 +35,19 @@ std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook
 BrepGoals geometry_goals(const Options& options, const BrepExtent& extent);
 
 /// @brief A grid of the sizes that are usual: to look at the geometry.
-Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report);
+/// @param is_quick  the coarse grid alone that sizes are found by
+Mesh grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGridReport& report);
 
-/// @brief grid_brep() by options.surface.method, as a surface mesh with the names of faces, edges and corners.
-Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
-                   BrepGridReport& report);
+/// @brief A grid of smooth geometry as an input: with the names of faces, edges and corners, and what the faces bound.
+NamedMesh named_surface(const Model& grid, const Brep& brep, const std::string& stem);
+
+/// @brief grid_brep() by options.surface.method.
+Model grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
+                    BrepGridReport& report);
 
 /// @brief The same by grid_brep_to_goals().
-Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
-                            Context& context, BrepRounds& report);
+Model grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
+                             Context& context, BrepRounds& report);
 
 /// @brief Whether a file holds smooth geometry: as text (.geom.toml) or from CAD (.step, .iges, …).
 bool is_smooth_file(const std::string& path);
@@ -50,6 +56,14 @@ bool is_smooth_file(const std::string& path);
 /// told to the context's log.
 /// @param cad  filled where it is a CAD file
 Brep read_brep(const std::string& path, Context& context, CadReport& cad);
+
+/// @brief What is suspicious about a CAD file first of all; empty: nothing.
+std::string doubt_of(const CadReport& cad);
+
+/// @brief Runs some work on the geometry of a file: errors in gridding it name the file and what is suspicious about
+/// it.
+/// @throws MeshingError, InputError, LimitError (also where it takes more memory than there is)
+void with_file(const std::string& path, const std::string& doubt, const std::function<void()>& work);
 
 /// @return the name of a file without folder and suffix
 std::string geometry_stem(const std::string& path);

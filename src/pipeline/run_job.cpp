@@ -73,18 +73,19 @@ void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& cont
 /// Smooth geometry has a grid to look at until sizes are known.
 void read_smooth(Run& run, const std::string& path) {
   CadReport cad;
-  GeometryInput smooth{run.inputs.size(), {}, {}};
+  GeometryInput smooth{run.inputs.size(), {}, {}, {}};
   {
     const StageTimer timer(run.context, "read");
     smooth.brep = read_brep(path, run.context, cad);
+    smooth.doubt = doubt_of(cad);
   }
   Options& options = run.options;  // several files might differ in their units
   if (options.input.units == "auto" && options.input.files.size() == 1 && metres_per_unit(cad.unit) > 0)
     options.input.units = cad.unit;
   const StageTimer timer(run.context, "look");
-  smooth.look = look_at_brep(smooth.brep, run.context);
+  with_file(path, smooth.doubt, [&] { smooth.look = look_at_brep(smooth.brep, run.context); });
   name_selected_faces(run.options.boundaries, path, cad, smooth);
-  run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
+  run.inputs.push_back(named_surface(smooth.look.grid, smooth.brep, stem_of(path)));
   run.smooth.push_back(std::move(smooth));
 }
 
@@ -211,14 +212,19 @@ void grid_smooth(Run& run, Model& model) {
     std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, smooth.look, options, asked, run.context);
     refuse_too_many_triangles(smooth.look.grid, *size, options.refine.levels, run.context);
     GeometryGrid made{options.input.files[smooth.input], {}};
+    const auto named = [&](const Model& grid) {
+      return named_surface(grid, smooth.brep, run.inputs[smooth.input].stem);
+    };
     if (options.refine.levels == 0) {
-      run.inputs[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+      with_file(made.file, smooth.doubt, [&] {
+        run.inputs[smooth.input] = named(grid_geometry_to_goals(smooth, size, options, run.context, made.rounds));
+      });
     } else {
       BrepGridReport coarse;
       if (run.geometry.points.empty())
-        fine[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+        fine[smooth.input] = named(grid_geometry_to_goals(smooth, size, options, run.context, made.rounds));
       size = coarse_sizes(std::move(size), options, model.bounding_box(), run.context);
-      run.inputs[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, coarse);
+      run.inputs[smooth.input] = named(grid_geometry(smooth.brep, *size, options, run.context, coarse));
     }
     log_rounds(made, run.context);
     if (!made.rounds.rounds.empty()) run.result.geometry.push_back(std::move(made));
