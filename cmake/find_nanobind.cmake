@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+# Whether the Python package can be built: DELFRONT_HAS_PYTHON, with the Python that is found and nanobind for it.
+# Debian's Python comes first, for which scripts/setup puts nanobind into build/python/packages; -DPython_EXECUTABLE=…
+# names another one. Under pip (scikit-build-core) it is pip's.
+set(DELFRONT_HAS_PYTHON OFF)
+if(DELFRONT_PYTHON_PACKAGE STREQUAL "OFF")
+  return()
+endif()
+if(NOT SKBUILD AND NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python_EXECUTABLE /usr/bin/python3)
+endif()
+set(missing "")
+find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
+if(NOT Python_Development.Module_FOUND)
+  set(missing "a Python of 3.9 or later with its headers (python3-dev)")
+else()
+  set(packages ${PROJECT_SOURCE_DIR}/build/python/packages)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${packages} ${Python_EXECUTABLE} -m nanobind --cmake_dir
+                  OUTPUT_VARIABLE nanobind_ROOT OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  find_package(nanobind CONFIG QUIET)
+  if(NOT nanobind_FOUND)
+    set(missing "nanobind (scripts/setup installs it)")
+  endif()
+endif()
+if(NOT missing)
+  set(DELFRONT_HAS_PYTHON ON)
+elseif(DELFRONT_PYTHON_PACKAGE STREQUAL "ON")
+  message(FATAL_ERROR "DELFRONT_PYTHON_PACKAGE is ON, but there is no ${missing}")
+else()
+  message(STATUS "The Python package is left out: there is no ${missing}")
+endif()
