@@ -175,7 +175,7 @@ void add_files(nb::module_& module) {
              "Returns what the format could not hold and how it was changed.");
   module.def("convert", &convert, "source"_a, "target"_a, "from_format"_a, "format"_a, "binary"_a, "version"_a,
              "compress"_a, "hooks"_a);
-  module.def("refine", &refine_to_python, "mesh"_a, "geometry"_a, "name"_a, "geometry_name"_a, "levels"_a,
+  module.def("refine", &refine_to_python, "mesh"_a, "geometry"_a.none(), "name"_a, "geometry_name"_a, "levels"_a,
              "feature_angle"_a, "max_cells"_a, "hooks"_a);
   module.def("formats", [] {
     nb::list result;

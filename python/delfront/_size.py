@@ -116,6 +116,8 @@ def vectorised(function: SizeFunction) -> SizeFunction:
 
     def sizes(at: np.ndarray) -> np.ndarray:
         values = np.asarray(function(at), dtype=np.float64)
+        if values.shape == (len(at),) and values.flags.c_contiguous:
+            return values
         if values.shape not in ((), (len(at),), (len(at), 1)):
             name = getattr(function, "__name__", "of sizes")
             raise ValueError(
