@@ -24,6 +24,7 @@ NB_MODULE(_core, module) {
   namespace py = delfront::python;
   module.doc() = "The compiled part of delfront: use the package delfront, whose functions are made of these.";
   module.attr("__version__") = delfront::kVersion;
+  nanobind::set_leak_warnings(false);  // what a traceback holds when Python ends is nobody's mistake
   nanobind::register_exception_translator(translate);
   py::add_runner(module);
   py::add_mesh(module);

@@ -247,7 +247,8 @@ def _held_arrays(
     first = next(iter(cells))
     dimension = 1 if first == "line" else 2
     if patches is None:
-        groups = [(n, dimension) for n in (names or [])[:1]]
+        called = list(names or ([name] if dimension == 1 else []))  # lines without a name would be "curves"
+        groups = [(n, dimension) for n in called[:1]]
         numbers = {first: np.zeros(len(cells[first]), np.int64)} if groups else {}
     else:
         of_cell = np.asarray(patches, dtype=np.int64)

@@ -115,7 +115,10 @@ def vectorised(function: SizeFunction) -> SizeFunction:
     """What the extension calls: one float64 a place, in C order."""
 
     def sizes(at: np.ndarray) -> np.ndarray:
-        values = np.asarray(function(at), dtype=np.float64)
+        given = function(at)
+        if given is None:
+            raise TypeError(f"the function {getattr(function, '__name__', 'of sizes')} gave None, not sizes")
+        values = np.asarray(given, dtype=np.float64)
         if values.shape == (len(at),) and values.flags.c_contiguous:
             return values
         if values.shape not in ((), (len(at),), (len(at), 1)):

@@ -18,6 +18,7 @@
 #include "sizing/asked_sizes.hpp"
 #include "sizing/sampled_bounds.hpp"
 #include "sizing/size_octree.hpp"
+#include "sizing/within_domain.hpp"
 
 namespace delfront {
 
@@ -80,8 +81,8 @@ FieldPointer build_expression_part(const Options& options, const Model& model, c
     sizes.second = optional_texts(asked.second);
     sizes.domain = domain;
     // Clamped first: where a formula falls towards 0, growth need not be seen to below hmin.
-    FieldPointer clamped =
-        combine_size_fields({build_expression_size_field(sizes, context)}, hmin_of(options), hmax_of(options));
+    FieldPointer clamped = combine_size_fields({ask_within(build_expression_size_field(sizes, context), domain)},
+                                               hmin_of(options), hmax_of(options));
     return limit_growth(std::move(clamped), domain, growth, context);
   } catch (const ExpressionError& e) {
     throw usage_error(options, "size.expression." + e.part, e.what());
@@ -181,7 +182,7 @@ FieldPointer build_solution_part(const Options& options, const Box& domain, Cont
 void add_parts_of_caller(const Options& options, const Model& model, const Box& domain, double growth,
                          std::vector<FieldPointer>& parts, Context& context) {
   for (const FieldPointer& field : options.size.fields) {
-    FieldPointer clamped = combine_size_fields({field}, hmin_of(options), hmax_of(options));
+    FieldPointer clamped = combine_size_fields({ask_within(field, domain)}, hmin_of(options), hmax_of(options));
     clamped = sample_bounds(std::move(clamped), domain, model.points, context);
     parts.push_back(limit_growth(std::move(clamped), domain, growth, context));
   }
