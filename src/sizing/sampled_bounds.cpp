@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -31,7 +32,8 @@ double parameter(double low, double high, double x) {
 struct Node {
   std::uint32_t child = 0;  ///< the first of two; 0: a leaf
   double least = kHuge;     ///< of all samples in it
-  double miss = 0;          ///< of the linear model
+  double miss = 0;          ///< how far below the linear model samples are
+  bool is_linear = true;    ///< as far as they tell
   std::array<double, 8> corner{};
 
   double linear(Point t) const {
@@ -134,7 +136,9 @@ class SampledBounds final : public SizeField {
     for (std::size_t c = 0; c < 8; ++c) node.corner[c] = h[2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2)];
     for (std::size_t k = 0; k < kSamples; ++k) {
       const Point t{0.5 * double(k % 3), 0.5 * double(k / 3 % 3), 0.5 * double(k / 9)};
-      node.miss = std::max(node.miss, node.linear(t) - h[k]);  // what is larger breaks no bound
+      const double above = h[k] - node.linear(t);
+      node.miss = std::max(node.miss, -above);
+      node.is_linear = node.is_linear && std::abs(above) <= kLinear * node.least;
     }
   }
 
@@ -144,7 +148,7 @@ class SampledBounds final : public SizeField {
     const double side = cell.box.high[axis] - cell.box.low[axis];
     if (side > kFirstShare * domain_.longest_side()) return true;
     if (side <= 0.5 * node.least) return false;
-    return node.miss > kLinear * node.least || cell.places.size() > kManyPlaces;
+    return !node.is_linear || cell.places.size() > kManyPlaces;
   }
 
   void cut(Cell cell, std::vector<Cell>& finer) {
@@ -174,7 +178,7 @@ class SampledBounds final : public SizeField {
       for (int k = 0; k < 3; ++k) t[k] = parameter(box.low[k], box.high[k], (c >> k & 1 ? asked.high : asked.low)[k]);
       least = std::min(least, node.linear(t));
     }
-    bound = std::min(bound, std::max(least - node.miss, 0.5 * node.least));
+    bound = std::min(bound, node.is_linear ? std::max(least - node.miss, 0.5 * node.least) : node.least);
   }
 
   std::shared_ptr<const SizeField> field_;

@@ -27,7 +27,7 @@ class JobLeavings : public testing::Test {
   fs::path folder_;
   Context context_;
   JobResult result_;
-  delfront::Run run_{{}, context_, result_, {}, {}, {}, {}};
+  delfront::Run run_{{}, context_, result_, {}, {}, {}, {}, {}};
 };
 
 TEST_F(JobLeavings, a_failed_gridding_leaves_what_there_is_beside_the_asked_name) {
