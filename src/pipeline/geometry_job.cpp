@@ -6,15 +6,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <utility>
 
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
+#include "delfront/io.hpp"
 #include "delfront/size_sources.hpp"
 #include "delfront/uniform_size.hpp"
 #include "pipeline/boundaries.hpp"
@@ -108,6 +111,21 @@ void tell(const CadReport& cad, const std::string& path, Context& context) {
                     path, cad.free_edges, first_place(cad)));
 }
 
+/// Whoever holds it may read a CAD file; the others wait, and can be stopped.
+class CadTurn {
+ public:
+  explicit CadTurn(const Context& context) : lock_(mutex(), std::defer_lock) {
+    while (!lock_.try_lock_for(std::chrono::milliseconds(50))) context.check_limits();
+  }
+
+ private:
+  static std::timed_mutex& mutex() {
+    static std::timed_mutex of_process;
+    return of_process;
+  }
+  std::unique_lock<std::timed_mutex> lock_;
+};
+
 }  // namespace
 
 std::shared_ptr<const SizeField> geometry_sizes(const Brep& brep, const BrepLook& look, const Options& options,
@@ -176,9 +194,30 @@ Mesh grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGrid
 
 bool is_smooth_file(const std::string& path) { return is_geometry_file(path) || is_cad_file(path); }
 
+bool is_smooth_input(const std::string& path, const JobExtras& extras) {
+  const auto held = extras.held.find(path);
+  return held == extras.held.end() ? is_smooth_file(path) : held->second->brep != nullptr;
+}
+
+HeldInput read_input(const std::string& path, Context& context, const std::string& format) {
+  HeldInput held;
+  if (!is_smooth_file(path)) {
+    const std::filesystem::path whole(path);
+    held.stem = (whole.has_filename() ? whole : whole.parent_path()).stem().string();
+    held.mesh = read_mesh(path, context, format);
+    return held;
+  }
+  held.stem = geometry_stem(path);
+  held.brep = std::make_shared<Brep>(read_brep(path, context, held.cad));
+  held.look = std::make_shared<BrepLook>(look_at_brep(*held.brep, context));
+  held.mesh = surface_mesh(held.look->grid);
+  return held;
+}
+
 Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
   Brep brep;
   if (is_cad_file(path)) {
+    const CadTurn turn(context);
     brep = read_cad(path, {}, cad, context);
     tell(cad, path, context);
   } else {

@@ -7,6 +7,7 @@
 #include "delfront/brep.hpp"
 #include "delfront/brep_sizes.hpp"
 #include "delfront/cad.hpp"
+#include "delfront/job.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
 #include "delfront/size_field.hpp"
@@ -52,9 +53,13 @@ Model grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const S
 /// @brief Whether a file holds smooth geometry: as text (.geom.toml) or from CAD (.step, .iges, …).
 bool is_smooth_file(const std::string& path);
 
+/// @brief The same of an entry of input.files, which the caller may hold.
+bool is_smooth_input(const std::string& path, const JobExtras& extras);
+
 /// @brief Read a file of geometry; faces without a name get the file's stem. What was mended and what is suspicious is
 /// told to the context's log.
 /// @param cad  filled where it is a CAD file
+/// @par Threads  CAD files wait for each other: OpenCASCADE has settings for the whole process
 Brep read_brep(const std::string& path, Context& context, CadReport& cad);
 
 /// @brief What is suspicious about a CAD file first of all; empty: nothing.
