@@ -229,11 +229,15 @@ Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
 }
 
 std::string doubt_of(const CadReport& cad) {
-  return cad.suspicious.empty() ? std::string() : cad.suspicious[0].message;
+  for (const CadNote& note : cad.suspicious)
+    for (const char* kind : {"not_translated", "lost_face", "not_mended", "not_imprinted", "parameter_curve_off",
+                             "edge_off_its_corner", "edge_without_curve"})
+      if (note.kind == kind) return note.message;
+  return {};
 }
 
 void with_file(const std::string& path, const std::string& doubt, const std::function<void()>& work) {
-  const std::string hint = doubt.empty() ? "" : "; the file may be damaged: " + doubt;
+  const std::string hint = doubt.empty() ? "" : "; suspicious about the file: " + doubt;
   const auto said = [&](const char* what) {
     const std::string message = what;
     return (message.starts_with(path) ? message : path + ": " + message) + hint;

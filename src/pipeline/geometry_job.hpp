@@ -62,7 +62,7 @@ bool is_smooth_input(const std::string& path, const JobExtras& extras);
 /// @par Threads  CAD files wait for each other: OpenCASCADE has settings for the whole process
 Brep read_brep(const std::string& path, Context& context, CadReport& cad);
 
-/// @brief What is suspicious about a CAD file first of all; empty: nothing.
+/// @brief The first thing about a CAD file that may keep it from being gridded; empty: nothing.
 std::string doubt_of(const CadReport& cad);
 
 /// @brief Runs some work on the geometry of a file: errors in gridding it name the file and what is suspicious about

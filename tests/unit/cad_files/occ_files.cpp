@@ -208,6 +208,7 @@ TopoDS_Wire section(double x, double chord, double thickness, double pitch) {
 
 TopoDS_Shape propeller(int blades) {
   BRepOffsetAPI_ThruSections loft(true, false, 1e-6);
+  loft.CheckCompatibility(false);  // which would cut closed sections in pieces that wave
   for (int i = 0; i <= 5; ++i) {
     const double s = i / 5.0;
     loft.AddWire(section(0.15 + 0.85 * s, 0.35 * (1 - 0.5 * s * s), 0.06 * (1 - 0.6 * s), 1.1 - 0.8 * s));
