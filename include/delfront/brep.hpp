@@ -129,7 +129,7 @@ struct BrepFace {
   std::string kind;                   ///< of the patch: "wall", …
   std::array<RegionId, 2> regions{};  ///< behind it, out of which its triangles face, and ahead of it; invalid: none,
                                       ///< or not known
-  double tolerance = 0;  ///< between the surface and its edges; below the Brep's: that
+  double tolerance = 0;               ///< between the surface and its edges; below the Brep's: that
 };
 
 /// @brief Smooth geometry, bounded: what CAD, splines and analytic shapes give (D1).

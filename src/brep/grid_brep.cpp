@@ -223,7 +223,8 @@ class BrepGridder {
   /// Sizes are lowered at the place, each third time all over the face.
   void fail(FaceId f, const std::string& why, Point at) {
     const BrepFace& face = brep_.faces[f];
-    why_ = face.name.empty() ? fmt::format("face {}: {}", f.value + 1, why) : fmt::format("face '{}': {}", face.name, why);
+    why_ =
+        face.name.empty() ? fmt::format("face {}: {}", f.value + 1, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
     has_failed_[f.index()] = true;
     lower_at(at);

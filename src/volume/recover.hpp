@@ -27,7 +27,7 @@ struct BoundaryGrid {
   TetComplex complex;
   std::vector<SplitTriangle> split;
   std::vector<std::vector<CurvePiece>> curve_pieces;  ///< by curve of the model; none for what lies outside
-  std::vector<std::string> regions;  ///< names, by colour
+  std::vector<std::string> regions;                   ///< names, by colour
 };
 
 /// @brief How long recovery goes on. Each round starts over, with a point more on every edge that resisted.

@@ -41,8 +41,8 @@ std::vector<bool> choose_regions(const TetComplex& complex, const std::vector<Re
 /// @return new colours; kOutside for what is not kept
 std::vector<std::uint32_t> order_regions(const std::vector<RegionFacts>& facts, const std::vector<bool>& keep);
 
-/// @brief Names in that order: as the model has them, parts of one numbered; the first without a name is "fluid", others
-/// are "region_" and their number.
+/// @brief Names in that order: as the model has them, parts of one numbered; the first without a name is "fluid",
+/// others are "region_" and their number.
 std::vector<std::string> name_regions(const std::vector<RegionFacts>& facts, const std::vector<std::uint32_t>& order,
                                       const Model& model);
 
