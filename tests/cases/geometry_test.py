@@ -67,6 +67,12 @@ class SmoothGeometry(case.Case):
             self.expect(6, "mesh", "ball.geom.toml", "-o", "ball.vtu", "--hmax", "1e-3", *limit, says=says)
         self.assertEqual(self.files(), ["ball.geom.toml"])
 
+    def test_a_boundary_whose_faces_later_ones_take_is_said(self):
+        self.write("room.geom.toml", '[[shape]]\ntype = "box"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
+        self.write("job.toml", '[input]\nfiles = ["room.geom.toml"]\n[boundaries.first]\nselect = { id = [1, 2] }\n'
+                   '[boundaries.later]\nselect = { id = [2, 1, 3] }\n[output]\nfiles = ["room.vtu"]\n')
+        self.expect(2, "mesh", "job.toml", says=["job.toml:", "boundaries.first", "come later", "later"])
+
     def test_shapes_that_cross_are_named(self):
         for x in ("0.8", "0"):  # the second: the same twice
             self.write("balls.geom.toml", '[[shape]]\ntype = "sphere"\nname = "left"\nradius = 1\n'
