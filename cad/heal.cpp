@@ -117,10 +117,9 @@ void fix(Part& part, const Say& say) {
   fixer->Perform(watch.range());
   watch.check();
   const Handle(ShapeBuild_ReShape) context = fixer->Context();
-  part.shape = fixer->Shape();
-  part.faces.follow(part.shape, [&](const TopoDS_Shape& face) {
+  part.become(fixer->Shape(), [&](const TopoDS_Shape& shape) {
     TopTools_ListOfShape images;
-    const TopoDS_Shape image = context->Apply(face);
+    const TopoDS_Shape image = context->Apply(shape);
     if (!image.IsNull()) images.Append(image);
     return images;
   });
@@ -192,10 +191,10 @@ void sew(Part& part, const CadOptions& options, const Say& say) {
   builder.MakeCompound(all);
   for (const TopoDS_Shape& shape : whole) builder.Add(all, shape);
   builder.Add(all, best->SewedShape());
-  part.shape = all;
-  part.faces.follow(part.shape, [&](const TopoDS_Shape& face) {
+  part.become(all, [&](const TopoDS_Shape& shape) {
     TopTools_ListOfShape images;
-    if (best->IsModifiedSubShape(face)) images.Append(best->ModifiedSubShape(face));
+    if (shape.ShapeType() == TopAbs_FACE && best->IsModifiedSubShape(shape))
+      images.Append(best->ModifiedSubShape(shape));
     return images;
   });
 }

@@ -1,97 +1,118 @@
 // SPDX-License-Identifier: Apache-2.0
-// The general fuse of several solids and sheets: faces that touch are cut by each other, and the common part is one
-// face of both. Where solids overlap, what they have in common becomes a solid of its own.
+// Several solids and sheets. What coincides as it is becomes one by hashing (merge_common.cpp); those that touch or
+// cross elsewhere go, in groups, through the general fuse: faces are cut by each other, and the common part is one face
+// of both. Where solids overlap, what they have in common becomes a solid of its own.
 #include <BOPAlgo_Builder.hxx>
-#include <BRepBndLib.hxx>
 #include <BRepTools_History.hxx>
-#include <Bnd_Box.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
-#include <algorithm>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <vector>
 
 #include "fmt/format.h"
-#include "part.hpp"
+#include "geometry.hpp"
+#include "translation.hpp"
 
 namespace delfront::cad {
 namespace {
 
-/// What is cut by each other: solids, shells of no solid, faces of no shell.
-TopTools_IndexedMapOfShape pieces_of(const TopoDS_Shape& shape) {
-  TopTools_IndexedMapOfShape pieces;
-  TopExp::MapShapes(shape, TopAbs_SOLID, pieces);
-  for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next()) pieces.Add(it.Current());
-  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) pieces.Add(it.Current());
-  return pieces;
+std::size_t count(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
+  TopTools_IndexedMapOfShape all;
+  TopExp::MapShapes(shape, kind, all);
+  return std::size_t(all.Extent());
 }
 
-/// Whether the boxes of two pieces meet, one of which bounds something: sheets beside sheets stay as they are. By
-/// sweeping along x.
-bool may_touch(const TopTools_IndexedMapOfShape& pieces) {
-  struct Piece {
-    Bnd_Box box;
-    double low = 0, high = 0;
-    bool is_closed = false;
-  };
-  std::vector<Piece> all;
-  for (int i = 1; i <= pieces.Extent(); ++i) {
-    Piece piece;
-    BRepBndLib::Add(pieces(i), piece.box, false);
-    if (piece.box.IsVoid()) continue;
-    double low_y = 0, low_z = 0, high_y = 0, high_z = 0;
-    piece.box.Get(piece.low, low_y, low_z, piece.high, high_y, high_z);
-    piece.is_closed = pieces(i).ShapeType() == TopAbs_SOLID || count_free_edges(pieces(i)) == 0;
-    all.push_back(piece);
+std::string place_of(const TopoDS_Shape& shape) {
+  const TopExp_Explorer vertex(shape, TopAbs_VERTEX);
+  if (!vertex.More()) return "?";
+  const Point p = point_of(BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current())));
+  return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
+}
+
+/// @return null where OpenCASCADE gives up
+TopoDS_Shape fuse(const TopTools_IndexedMapOfShape& pieces, const std::vector<int>& group, const Say& say,
+                  Handle(BRepTools_History) & history) {
+  BOPAlgo_Builder builder;
+  for (const int p : group) builder.AddArgument(pieces(p + 1));
+  builder.SetNonDestructive(true);
+  builder.SetRunParallel(false);
+  Watch watch(say, "joining solids");
+  try {
+    builder.Perform(watch.range());
+  } catch (const Standard_Failure&) {
+    return {};
   }
-  std::sort(all.begin(), all.end(), [](const Piece& a, const Piece& b) { return a.low < b.low; });
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = i + 1; j < all.size() && all[j].low <= all[i].high; ++j)
-      if ((all[i].is_closed || all[j].is_closed) && !all[i].box.IsOut(all[j].box)) return true;
-  return false;
+  watch.check();
+  if (builder.HasErrors() || builder.Shape().IsNull() || count(builder.Shape(), TopAbs_FACE) == 0) return {};
+  history = builder.History();
+  return builder.Shape();
 }
 
-std::size_t count_faces(const TopoDS_Shape& shape) {
-  TopTools_IndexedMapOfShape faces;
-  TopExp::MapShapes(shape, TopAbs_FACE, faces);
-  return std::size_t(faces.Extent());
+/// Each group gives way to what became of it, where its first piece was.
+void fuse_groups(const std::vector<std::vector<int>>& groups, Part& part, const Say& say) {
+  const TopTools_IndexedMapOfShape pieces = pieces_of(part.shape);
+  std::vector<TopoDS_Shape> made(std::size_t(pieces.Extent()));
+  std::vector<Handle(BRepTools_History)> histories;
+  for (int p = 0; p < pieces.Extent(); ++p) made[std::size_t(p)] = pieces(p + 1);
+  for (const std::vector<int>& group : groups) {
+    Handle(BRepTools_History) history;
+    const TopoDS_Shape fused = fuse(pieces, group, say, history);
+    if (fused.IsNull()) {
+      part.report.suspicious.push_back(
+          {"not_imprinted",
+           fmt::format("{} solids and sheets that touch or cross each other could not be joined, the first with a "
+                       "corner at {}",
+                       group.size(), place_of(pieces(group[0] + 1))),
+           {}});
+      continue;
+    }
+    histories.push_back(history);
+    for (const int p : group) made[std::size_t(p)] = TopoDS_Shape();
+    made[std::size_t(group[0])] = fused;
+  }
+  BRep_Builder builder;
+  TopoDS_Compound all;
+  builder.MakeCompound(all);
+  for (const TopoDS_Shape& shape : made)
+    if (!shape.IsNull()) builder.Add(all, shape);
+  part.become(all, [&](const TopoDS_Shape& shape) {
+    TopTools_ListOfShape images;
+    for (const Handle(BRepTools_History) & history : histories) {
+      if (history.IsNull()) continue;
+      for (const TopoDS_Shape& image : history->Modified(shape)) images.Append(image);
+    }
+    return images;
+  });
 }
 
 }  // namespace
 
-void imprint(Part& part, const Say& say) {
-  const TopTools_IndexedMapOfShape pieces = pieces_of(part.shape);
-  if (pieces.Extent() < 2 || !may_touch(pieces)) return;
-  TopTools_IndexedMapOfShape solids;
-  TopExp::MapShapes(part.shape, TopAbs_SOLID, solids);
-  BOPAlgo_Builder fuse;
-  for (int i = 1; i <= pieces.Extent(); ++i) fuse.AddArgument(pieces(i));
-  fuse.SetNonDestructive(true);
-  fuse.SetRunParallel(false);
-  Watch watch(say, "joining solids");
-  fuse.Perform(watch.range());
-  watch.check();
-  if (fuse.HasErrors() || fuse.Shape().IsNull() || count_faces(fuse.Shape()) == 0) {
-    part.report.suspicious.push_back(
-        {"not_imprinted",
-         fmt::format("the {} solids and sheets could not be joined where they touch", pieces.Extent()),
-         {}});
-    return;
+Translation join(Part& part, const Say& say) {
+  Translation data = translate(part, say);
+  if (data.is_closed.size() < 2) return data;
+  const std::size_t before = data.faces.size(), solids = count(part.shape, TopAbs_SOLID);
+  say("joining solids", -1);
+  std::size_t merged = merge_common(data, part.diagonal);
+  const std::vector<std::vector<int>> groups = find_contacts(data);
+  if (!groups.empty()) {
+    fuse_groups(groups, part, say);
+    data = translate(part, say);
+    merged = merge_common(data, part.diagonal);
   }
-  const std::size_t before = count_faces(part.shape), after = count_faces(fuse.Shape());
-  const Handle(BRepTools_History) history = fuse.History();
-  part.shape = fuse.Shape();
-  part.faces.follow(part.shape, [&](const TopoDS_Shape& face) {
-    return history.IsNull() ? TopTools_ListOfShape() : history->Modified(face);
-  });
-  TopTools_IndexedMapOfShape made;
-  TopExp::MapShapes(part.shape, TopAbs_SOLID, made);
-  if (before != after || made.Extent() != solids.Extent())
+  const std::size_t after = data.faces.size(), solids_after = count(part.shape, TopAbs_SOLID);
+  if (merged > 0 || before != after || solids != solids_after)
     part.report.repairs.push_back(
         {"imprinted",
          fmt::format("solids and sheets that touch were joined: {} faces became {}, {} solids {}", before, after,
-                     solids.Extent(), made.Extent()),
+                     solids, solids_after),
          {}});
+  return data;
 }
 
 }  // namespace delfront::cad

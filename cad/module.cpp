@@ -4,11 +4,13 @@
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_OutOfMemory.hxx>
 #include <Standard_Version.hxx>
 #include <mutex>
+#include <new>
 
 #include "fmt/format.h"
-#include "part.hpp"
+#include "translation.hpp"
 
 namespace delfront::cad {
 namespace {
@@ -33,6 +35,11 @@ class Silence {
   Message_SequenceOfPrinters printers_;
 };
 
+constexpr const char* kNoMemory =
+    "reading it takes more memory than there is; a number in the file that counts something is probably damaged: "
+    "export "
+    "it again, or part by part";
+
 void work(const Request& request, Result& result) {
   const Say say = [&](const char* what, double fraction) {
     if (request.progress && !request.progress(request.user, what, fraction)) throw Stopped();
@@ -40,8 +47,8 @@ void work(const Request& request, Result& result) {
   say("reading", -1);
   Part part = read_file(request.path, say);
   heal(part, request.options, say);
-  if (request.options.imprints) imprint(part, say);
-  translate(part, result, say);
+  Translation data = request.options.imprints ? join(part, say) : translate(part, say);
+  finish(part, std::move(data), result);
 }
 
 Result* read(const Request* request) {
@@ -55,6 +62,10 @@ Result* read(const Request* request) {
     result->ending = Result::Ending::stopped;
   } catch (const Failure& e) {
     result->error = e.what();
+  } catch (const std::bad_alloc&) {
+    result->error = kNoMemory;
+  } catch (const Standard_OutOfMemory&) {
+    result->error = kNoMemory;
   } catch (const Standard_Failure& e) {
     result->error = fmt::format("OpenCASCADE could not read it: {} {}", e.DynamicType()->Name(),
                                 e.GetMessageString() ? e.GetMessageString() : "");

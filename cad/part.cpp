@@ -18,19 +18,24 @@
 
 namespace delfront::cad {
 
-void FaceTable::set(const TopoDS_Shape& face, const FaceFacts& facts) {
-  if (const int* known = index_.Seek(face)) return merge(facts_[std::size_t(*known)], facts);
-  index_.Bind(face, int(facts_.size()));
+void FactTable::set(const TopoDS_Shape& shape, const FaceFacts& facts) {
+  if (const int* known = index_.Seek(shape)) return merge(facts_[std::size_t(*known)], facts);
+  index_.Bind(shape, int(facts_.size()));
   facts_.push_back(facts);
-  faces_.push_back(face);
+  shapes_.push_back(shape);
 }
 
-const FaceFacts* FaceTable::find(const TopoDS_Shape& face) const {
-  const int* known = index_.Seek(face);
-  return known ? &facts_[std::size_t(*known)] : nullptr;
+int FactTable::rank(const TopoDS_Shape& shape) const {
+  const int* known = index_.Seek(shape);
+  return known ? *known : -1;
 }
 
-void FaceTable::merge(FaceFacts& into, const FaceFacts& from) {
+const FaceFacts* FactTable::find(const TopoDS_Shape& shape) const {
+  const int known = rank(shape);
+  return known < 0 ? nullptr : &facts_[std::size_t(known)];
+}
+
+void FactTable::merge(FaceFacts& into, const FaceFacts& from) {
   if (into.name.empty()) into.name = from.name;
   if (into.colour.empty()) into.colour = from.colour;
   if (into.layer.empty()) into.layer = from.layer;
@@ -38,19 +43,25 @@ void FaceTable::merge(FaceFacts& into, const FaceFacts& from) {
     if (std::find(into.solids.begin(), into.solids.end(), solid) == into.solids.end()) into.solids.push_back(solid);
 }
 
-void FaceTable::follow(const TopoDS_Shape& after,
+void FactTable::follow(const TopoDS_Shape& after,
                        const std::function<TopTools_ListOfShape(const TopoDS_Shape&)>& images) {
   TopTools_IndexedMapOfShape there;
-  TopExp::MapShapes(after, TopAbs_FACE, there);
-  FaceTable next;
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const TopTools_ListOfShape made = images(faces_[i]);
-    if (there.Contains(faces_[i])) next.set(faces_[i], facts_[i]);
+  TopExp::MapShapes(after, kind_, there);
+  FactTable next(kind_);
+  for (std::size_t i = 0; i < shapes_.size(); ++i) {
+    const TopTools_ListOfShape made = images(shapes_[i]);
+    if (there.Contains(shapes_[i])) next.set(shapes_[i], facts_[i]);
     for (const TopoDS_Shape& image : made)
-      for (TopExp_Explorer face(image, TopAbs_FACE); face.More(); face.Next())
-        if (!face.Current().IsSame(faces_[i])) next.set(face.Current(), facts_[i]);
+      for (TopExp_Explorer part(image, kind_); part.More(); part.Next())
+        if (!part.Current().IsSame(shapes_[i])) next.set(part.Current(), facts_[i]);
   }
   *this = next;
+}
+
+void Part::become(const TopoDS_Shape& after, const std::function<TopTools_ListOfShape(const TopoDS_Shape&)>& images) {
+  shape = after;
+  faces.follow(shape, images);
+  solids.follow(shape, images);
 }
 
 namespace {

@@ -28,27 +28,35 @@ struct FaceFacts {
   std::vector<std::string> solids;
 };
 
-/// @brief What is known of faces, by their shape without orientation; follows them through operations.
-class FaceTable {
+/// @brief What is known of faces, or of solids, by their shape without orientation; follows them through operations.
+class FactTable {
  public:
-  void set(const TopoDS_Shape& face, const FaceFacts& facts);
-  const FaceFacts* find(const TopoDS_Shape& face) const;
-  /// @param images  what became of a face; empty: it is gone, or unchanged where it is still in the shape
+  explicit FactTable(TopAbs_ShapeEnum kind) : kind_(kind) {}
+  void set(const TopoDS_Shape& shape, const FaceFacts& facts);
+  const FaceFacts* find(const TopoDS_Shape& shape) const;
+  /// @brief The place of a shape in the order they came, which operations keep; -1: it is not there.
+  int rank(const TopoDS_Shape& shape) const;
+  /// @param images  what became of a shape; empty: it is gone, or unchanged where it is still there
   void follow(const TopoDS_Shape& after, const std::function<TopTools_ListOfShape(const TopoDS_Shape&)>& images);
 
  private:
   static void merge(FaceFacts& into, const FaceFacts& from);
+  TopAbs_ShapeEnum kind_;
   TopTools_DataMapOfShapeInteger index_;
   std::vector<FaceFacts> facts_;
-  std::vector<TopoDS_Shape> faces_;  ///< in the order they came: that of the map is one of addresses
+  std::vector<TopoDS_Shape> shapes_;  ///< in the order they came: that of the map is one of addresses
 };
 
 /// @brief A file's geometry on its way to the caller.
 struct Part {
   TopoDS_Shape shape;
-  FaceTable faces;
+  FactTable faces{TopAbs_FACE};
+  FactTable solids{TopAbs_SOLID};  ///< all of them; names in FaceFacts::solids
   CadReport report;
   double diagonal = 0;  ///< of the box round it
+
+  /// @brief A new shape, and what became of faces and solids on the way.
+  void become(const TopoDS_Shape& after, const std::function<TopTools_ListOfShape(const TopoDS_Shape&)>& images);
 };
 
 /// @brief A sentence of progress; throws Stopped where the caller says so.
@@ -74,11 +82,10 @@ void drop_double_faces(Part& part);
 /// @brief Solids with everything but their inside in them.
 void turn_inverted_solids(Part& part);
 
+struct Translation;
 /// @brief What several solids share becomes the same face of each.
-void imprint(Part& part, const Say& say);
-
-/// @brief Vertices, edges and faces as plain data.
-void translate(Part& part, Result& result, const Say& say);
+/// @return the part as plain data
+Translation join(Part& part, const Say& say);
 
 /// @brief A range that asks the caller whether to go on, for OpenCASCADE's long loops.
 class Watch {

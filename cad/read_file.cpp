@@ -190,6 +190,9 @@ class Document {
       TopExp::MapShapes(solids(s), TopAbs_FACE, faces);
       for (int f = 1; f <= faces.Extent(); ++f)
         note_face(product, faces(f), at, {colour, from.layer, name}, true, part);
+      FaceFacts facts;
+      facts.solids = {name};
+      part.solids.set(solids(s).Moved(at), facts);
     }
     for (int f = 1; f <= all.Extent(); ++f)
       if (solids.IsEmpty()) note_face(product, all(f), at, from, false, part);
@@ -491,6 +494,8 @@ Part read_file(const std::string& path, const Say& say) {
     read_iges(path, part, say);
   else
     read_brep_text(path, part, suffix == ".egads" ? "EGADS" : "BREP");
+  for (TopExp_Explorer solid(part.shape, TopAbs_SOLID); solid.More(); solid.Next())
+    if (!part.solids.find(solid.Current())) part.solids.set(solid.Current(), {});
   part.diagonal = diagonal_of(part.shape);
   return part;
 }

@@ -29,8 +29,8 @@
 
 #include "fmt/format.h"
 #include "geometry.hpp"
-#include "part.hpp"
 #include "shells.hpp"
+#include "translation.hpp"
 
 namespace delfront::cad {
 namespace {
@@ -61,10 +61,9 @@ std::string place(Point p) { return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, 
 
 /// The shape after what is recorded, and what is known of its faces.
 void apply(const Handle(BRepTools_ReShape) & context, Part& part) {
-  part.shape = context->Apply(part.shape);
-  part.faces.follow(part.shape, [&](const TopoDS_Shape& face) {
+  part.become(context->Apply(part.shape), [&](const TopoDS_Shape& shape) {
     TopTools_ListOfShape images;
-    const TopoDS_Shape image = context->Apply(face);
+    const TopoDS_Shape image = context->Apply(shape);
     if (!image.IsNull()) images.Append(image);
     return images;
   });
@@ -204,8 +203,7 @@ bool is_same_face(const Outline& a, const Outline& b, double tolerance) {
   for (const gp_Pnt& p : a.middles)
     if (std::none_of(b.middles.begin(), b.middles.end(), [&](const gp_Pnt& q) { return p.Distance(q) <= tolerance; }))
       return false;
-  gp_Pnt within;
-  return place_within(a.face, within) && lies_on(within, b.face, tolerance);
+  return is_same_surface(a.face, b.face, tolerance);
 }
 
 void note_double(const TopoDS_Face& face, Part& part) {
@@ -258,6 +256,26 @@ bool is_inside_out(const TopoDS_Shape& solid, double diagonal) {
 }
 
 }  // namespace
+
+bool is_same_surface(const TopoDS_Face& a, const TopoDS_Face& b, double tolerance) {
+  gp_Pnt within;
+  return place_within(a, within) && lies_on(within, b, tolerance);
+}
+
+bool looks_the_same_way(const TopoDS_Face& a, const TopoDS_Face& b) {
+  gp_Pnt at;
+  if (!place_within(a, at)) return false;
+  const auto normal = [&](const TopoDS_Face& face) {
+    const GeomAPI_ProjectPointOnSurf on(at, BRep_Tool::Surface(face));
+    double u = 0, v = 0;
+    if (on.NbPoints() > 0) on.LowerDistanceParameters(u, v);
+    gp_Pnt p;
+    gp_Vec du, dv;
+    BRep_Tool::Surface(face)->D1(u, v, p, du, dv);
+    return face.Orientation() == TopAbs_REVERSED ? dv.Crossed(du) : du.Crossed(dv);
+  };
+  return normal(a).Dot(normal(b)) > 0;
+}
 
 void check_corners(const Part& part) {
   TopTools_IndexedMapOfShape edges;

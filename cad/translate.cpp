@@ -18,7 +18,7 @@
 
 #include "fmt/format.h"
 #include "geometry.hpp"
-#include "part.hpp"
+#include "translation.hpp"
 
 namespace delfront::cad {
 namespace {
@@ -51,23 +51,15 @@ const char* name_of(SurfaceData::Kind kind) {
 
 class Translator {
  public:
-  Translator(Part& part, Result& result) : part_(part), result_(result) {
-    TopExp::MapShapes(part.shape, TopAbs_FACE, faces_);
-    for (int f = 1; f <= faces_.Extent(); ++f)
-      if (const FaceFacts* facts = part.faces.find(faces_(f)))
-        for (const std::string& solid : facts->solids) colours_[solid].insert(facts->colour);
-  }
+  explicit Translator(const Part& part) : part_(part) { TopExp::MapShapes(part.shape, TopAbs_FACE, faces_); }
 
-  void run(const Say& say) {
+  Translation run(const Say& say) {
     for (int f = 1; f <= faces_.Extent(); ++f) {
       if (f % 64 == 1) say("translating faces", double(f) / faces_.Extent());
       add_face(TopoDS::Face(faces_(f)));
     }
-    for (TopExp_Explorer s(part_.shape, TopAbs_SOLID); s.More(); s.Next()) ++part_.report.solids;
-    for (TopExp_Explorer s(part_.shape, TopAbs_SHELL); s.More(); s.Next()) ++part_.report.shells;
-    part_.report.free_edges = count_free_edges(part_.shape);
-    part_.report.largest_tolerance = largest_tolerance(part_.shape);
-    result_.report = std::move(part_.report);
+    note_owners();
+    return std::move(result_);
   }
 
  private:
@@ -94,8 +86,13 @@ class Translator {
       BRep_Tool::Range(edge, face, made.range[0], made.range[1]);
     else
       made.curve = curve_data(curve, made.range);
+    std::array<Point, kEdgeSamples> samples{};
+    for (int i = 0; i < kEdgeSamples && !curve.IsNull(); ++i)
+      samples[std::size_t(i)] =
+          point_of(curve->Value(made.range[0] + (made.range[1] - made.range[0]) * (i + 1) / (kEdgeSamples + 1)));
+    result_.samples.push_back(samples);
     if (curve.IsNull() && !BRep_Tool::Degenerated(edge))
-      part_.report.suspicious.push_back(
+      result_.suspicious.push_back(
           {"edge_without_curve",
            fmt::format("an edge between corners {} and {} has no curve in space", made.corners[0] + 1,
                        made.corners[1] + 1),
@@ -122,19 +119,8 @@ class Translator {
       made.facts.layer = facts->layer;
       made.facts.solids = facts->solids;
     }
-    made.name = grid_name(made.facts);
+    result_.shapes.push_back(given);
     result_.faces.push_back(std::move(made));
-  }
-
-  std::string grid_name(const CadFace& facts) const {
-    if (!facts.name.empty()) return facts.name;
-    const auto has_several = [&](const std::string& solid) { return colours_.at(solid).size() > 1; };
-    const bool is_coloured = std::any_of(facts.solids.begin(), facts.solids.end(), has_several);
-    if (is_coloured && !facts.colour.empty()) return "colour_" + facts.colour;
-    std::string name;
-    for (const std::string& solid : facts.solids)
-      if (!solid.empty()) name += (name.empty() ? "" : "-") + solid;
-    return name;
   }
 
   void add_wire(const TopoDS_Wire& wire, const TopoDS_Face& face, Face& made) {
@@ -142,7 +128,7 @@ class Translator {
     for (TopoDS_Iterator it(wire); it.More(); it.Next()) {
       const TopoDS_Edge edge = TopoDS::Edge(it.Value());
       if (edge.Orientation() == TopAbs_INTERNAL || edge.Orientation() == TopAbs_EXTERNAL) {
-        ++part_.report.internal_edges;
+        ++result_.internal_edges;
         continue;
       }
       Use use;
@@ -159,14 +145,129 @@ class Translator {
     if (!loop.empty()) made.loops.push_back(std::move(loop));
   }
 
-  Part& part_;
-  Result& result_;
+  /// Of a face that a solid has on both sides, it is on both.
+  void note_owners() {
+    result_.owners.resize(result_.faces.size());
+    const TopTools_IndexedMapOfShape pieces = pieces_of(part_.shape);
+    for (int p = 1; p <= pieces.Extent(); ++p) {
+      const bool is_solid = pieces(p).ShapeType() == TopAbs_SOLID;
+      result_.is_closed.push_back(is_solid || count_free_edges(pieces(p)) == 0);
+      for (TopExp_Explorer it(pieces(p), TopAbs_FACE); it.More(); it.Next()) {
+        const int f = faces_.FindIndex(it.Current());
+        if (f < 1) continue;
+        Translation::Owners& owners = result_.owners[std::size_t(f - 1)];
+        if (owners.pieces.empty() || owners.pieces.back() != p - 1) owners.pieces.push_back(p - 1);
+        const bool is_behind = it.Current().Orientation() == faces_(f).Orientation();
+        if (is_solid && owners.solids[is_behind ? 0 : 1] < 0) owners.solids[is_behind ? 0 : 1] = p - 1;
+      }
+    }
+  }
+
+  const Part& part_;
+  Translation result_;
   TopTools_IndexedMapOfShape vertices_, edges_, faces_;
+};
+
+/// Names of faces: their own, that of their colour where a part has several, or that of their part.
+class Namer {
+ public:
+  explicit Namer(const std::vector<Face>& faces) {
+    for (const Face& face : faces)
+      for (const std::string& solid : face.facts.solids) colours_[solid].insert(face.facts.colour);
+  }
+
+  std::string name_of(const CadFace& facts) const {
+    if (!facts.name.empty()) return facts.name;
+    const auto has_several = [&](const std::string& solid) { return colours_.at(solid).size() > 1; };
+    const bool is_coloured = std::any_of(facts.solids.begin(), facts.solids.end(), has_several);
+    if (is_coloured && !facts.colour.empty()) return "colour_" + facts.colour;
+    return together(facts.solids);
+  }
+
+  static std::string together(const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& name : names)
+      if (!name.empty()) all += (all.empty() ? "" : "-") + name;
+    return all;
+  }
+
+ private:
   std::map<std::string, std::set<std::string>> colours_;  ///< of each part
 };
 
+/// Solids in the order of the file, and which of them each face bounds.
+void add_regions(const Part& part, const Translation& data, Result& result) {
+  const TopTools_IndexedMapOfShape pieces = pieces_of(part.shape);
+  std::vector<std::pair<int, int>> order;  // rank, piece
+  for (int p = 1; p <= pieces.Extent(); ++p)
+    if (pieces(p).ShapeType() == TopAbs_SOLID) order.emplace_back(part.solids.rank(pieces(p)), p - 1);
+  std::stable_sort(order.begin(), order.end());
+  std::vector<int> region(std::size_t(pieces.Extent()), -1);
+  for (const auto& [rank, piece] : order) {
+    region[std::size_t(piece)] = int(result.regions.size());
+    const FaceFacts* facts = part.solids.find(pieces(piece + 1));
+    result.regions.push_back(facts ? Namer::together(facts->solids) : std::string());
+  }
+  for (std::size_t f = 0; f < data.owners.size(); ++f)
+    for (std::size_t k = 0; k < 2; ++k)
+      if (const int solid = data.owners[f].solids[k]; solid >= 0)
+        result.faces[f].regions[k] = region[std::size_t(solid)];
+}
+
+/// Edges that one face has, and only once: the surface is open there.
+void note_free_edges(const Translation& data, CadReport& report) {
+  constexpr std::size_t kMost = 1000;
+  std::vector<int> uses(data.edges.size());
+  std::vector<std::size_t> face_of(data.edges.size());
+  for (std::size_t f = 0; f < data.faces.size(); ++f)
+    for (const auto& loop : data.faces[f].loops)
+      for (const Use& use : loop) {
+        ++uses[std::size_t(use.edge)];
+        face_of[std::size_t(use.edge)] = f;
+      }
+  for (std::size_t e = 0; e < data.edges.size(); ++e) {
+    if (uses[e] != 1 || data.edges[e].curve.kind == CurveData::Kind::none) continue;
+    if (++report.free_edges > kMost) continue;
+    const auto& places = data.samples[e];
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < places.size(); ++i) length += distance(places[i], places[i + 1]);
+    length *= double(kEdgeSamples + 1) / (kEdgeSamples - 1);  // the ends are no samples
+    const Point at = places[kEdgeSamples / 2];
+    report.open_at.push_back({"free_edge",
+                              fmt::format("edge {}, about {:.3g} long, bounds face {} only; its middle is at ({:g}, "
+                                          "{:g}, {:g})",
+                                          e + 1, length, face_of[e] + 1, at.x, at.y, at.z),
+                              at});
+  }
+}
+
 }  // namespace
 
-void translate(Part& part, Result& result, const Say& say) { Translator(part, result).run(say); }
+TopTools_IndexedMapOfShape pieces_of(const TopoDS_Shape& shape) {
+  TopTools_IndexedMapOfShape pieces;
+  TopExp::MapShapes(shape, TopAbs_SOLID, pieces);
+  for (TopExp_Explorer it(shape, TopAbs_SHELL, TopAbs_SOLID); it.More(); it.Next()) pieces.Add(it.Current());
+  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) pieces.Add(it.Current());
+  return pieces;
+}
+
+Translation translate(const Part& part, const Say& say) { return Translator(part).run(say); }
+
+void finish(Part& part, Translation data, Result& result) {
+  const Namer namer(data.faces);
+  for (Face& face : data.faces) face.name = namer.name_of(face.facts);
+  CadReport& report = part.report;
+  for (TopExp_Explorer s(part.shape, TopAbs_SOLID); s.More(); s.Next()) ++report.solids;
+  for (TopExp_Explorer s(part.shape, TopAbs_SHELL); s.More(); s.Next()) ++report.shells;
+  report.internal_edges += data.internal_edges;
+  report.largest_tolerance = largest_tolerance(part.shape);
+  report.suspicious.insert(report.suspicious.end(), data.suspicious.begin(), data.suspicious.end());
+  note_free_edges(data, report);
+  result.vertices = std::move(data.vertices);
+  result.edges = std::move(data.edges);
+  result.faces = std::move(data.faces);
+  add_regions(part, data, result);
+  result.report = std::move(report);
+}
 
 }  // namespace delfront::cad

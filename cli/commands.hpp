@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "delfront/context.hpp"
-#include "delfront/findings.hpp"
-#include "delfront/grid_check.hpp"
 #include "delfront/job.hpp"
-#include "delfront/mesh.hpp"
 #include "terminal.hpp"
 
 namespace delfront::cli {
@@ -49,15 +46,6 @@ std::unique_ptr<Command> make_refine_command(CLI::App& app);
 
 /// @return names of the formats that can be read (or written), one a line with their extensions
 std::string format_list();
-
-/// @brief Findings as a table: severity, count, what, first places, what to try.
-void print_findings(const std::vector<Finding>& findings, std::size_t places_shown = 3);
-/// @brief Quality as a table: min, mean, max of each measure; with the worst cells and their places.
-void print_quality(const QualityReport& report, std::size_t worst_shown);
-/// @brief Counts by cell type, groups by dimension, box.
-void print_mesh_facts(const Mesh& mesh);
-/// @return "1,234,567"
-std::string with_commas(std::size_t value);
 
 /// @brief Text to a file, or to stdout for "-". @throws IoError
 void write_json(const std::string& path, const std::string& text);

@@ -6,7 +6,8 @@
 #include "commands.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
-#include "pipeline/geometry_job.hpp"
+#include "pipeline/convert_job.hpp"
+#include "pipeline/facts_text.hpp"
 
 namespace delfront::cli {
 
@@ -35,27 +36,16 @@ class ConvertCommand : public Command {
   }
 
   int run(const std::string&) override {
-    if (!msh_version_.empty() && msh_version_ != "2.2" && msh_version_ != "4.1")
-      throw UsageError(fmt::format("--msh-version {}: allowed are 2.2 and 4.1", msh_version_));
     Terminal terminal = make_terminal();
     Context context;
     prepare(context, terminal);
-    std::error_code ignored;
-    if (std::filesystem::equivalent(in_, out_, ignored))
-      throw UsageError(fmt::format("{} is the input and would be overwritten; give OUT another name", out_));
-    check_writable(out_);
-    if (is_smooth_file(in_))
-      throw UsageError(
-          fmt::format("{} is smooth geometry, which has no cells yet: delfront mesh {} -o {} --stop-after "
-                      "surface grids it",
-                      in_, in_, out_));
-    const Mesh mesh = read_mesh(in_, context, from_);
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};
-    const std::vector<std::string> changes = write_mesh(mesh, out_, context, how, to_);
+    std::vector<std::string> changes;
+    const Mesh mesh = convert_file(in_, out_, {.from = from_, .to = to_, .how = how}, changes, context);
     terminal.clear_bar();
     for (const std::string& change : changes) terminal.log(LogLevel::warning, change);
     if (terminal.verbosity() < 0) return 0;
-    print_mesh_facts(mesh);
+    fmt::print("{}", mesh_facts_text(mesh));
     fmt::print("written        {}\n", out_);
     return 0;
   }

@@ -14,6 +14,7 @@
 #include "delfront/geometry_text.hpp"
 #include "delfront/job.hpp"
 #include "guard.hpp"
+#include "pipeline/facts_text.hpp"
 #include "pipeline/option_table.hpp"
 
 namespace delfront::cli {
@@ -106,7 +107,8 @@ class JobCommand : public Command {
     if (!result.error.empty()) show_failure(result, terminal);
     if (result.exit_code == ExitCode::done || result.exit_code == ExitCode::gate_not_met)
       if (terminal.verbosity() >= 0)
-        result.estimate ? print_estimate(*result.estimate, options) : print_summary(result, options);
+        result.estimate ? fmt::print("{}", estimate_text(*result.estimate, options.limits.max_cells))
+                        : print_summary(result, options);
     return static_cast<int>(result.exit_code);
   }
 
@@ -244,25 +246,6 @@ class JobCommand : public Command {
     return warnings;
   }
 
-  static void print_estimate(const Estimate& e, const Options& options) {
-    fmt::print("cells          {}{}\n", e.is_at_least ? "at least " : "about ", with_commas(rounded(e.cells)));
-    if (options.limits.max_cells > 0 && e.cells > static_cast<double>(options.limits.max_cells))
-      fmt::print("limit          limits.max_cells is {}: mesh would stop there\n",
-                 with_commas(options.limits.max_cells));
-    fmt::print("points         about {}\n", with_commas(rounded(e.points)));
-    fmt::print("sizes          {:.4g} to {:.4g}\n", e.least_size, e.greatest_size);
-    fmt::print("memory         about {}\n",
-               e.memory < 1e9 ? fmt::format("{:.0f} MB", e.memory / 1e6) : fmt::format("{:.1f} GB", e.memory / 1e9));
-    fmt::print("time           about {}\n",
-               e.seconds < 120 ? fmt::format("{:.2g} s", e.seconds) : fmt::format("{:.0f} min", e.seconds / 60));
-  }
-
-  /// To three digits: more would be made up.
-  static std::size_t rounded(double value) {
-    const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(value, 1.0))) - 2));
-    return static_cast<std::size_t>(std::min(unit * std::round(value / unit), 1e18));
-  }
-
   static void print_geometry(const GeometryGrid& made) {
     const BrepAccuracy& a = made.rounds.last();
     fmt::print(
@@ -287,9 +270,9 @@ class JobCommand : public Command {
   }
 
   static void print_summary(const JobResult& result, const Options& options) {
-    print_mesh_facts(result.mesh);
+    fmt::print("{}", mesh_facts_text(result.mesh));
     const QualityReport& quality = result.report.quality;
-    if (quality.num_cells) print_quality(quality, 0);
+    if (quality.num_cells) fmt::print("{}", quality_text(quality, 0));
     if (const LevelsReport& levels = result.report.levels; levels.refined.levels > 0)
       fmt::print("levels         {}: from {} coarse cells\n", levels.refined.levels, with_commas(levels.coarse_cells));
     const SurfaceGridReport& grid = result.report.surface_grid;

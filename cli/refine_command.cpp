@@ -14,7 +14,9 @@
 #include "delfront/io.hpp"
 #include "delfront/refine_grid.hpp"
 #include "delfront/version.hpp"
+#include "pipeline/facts_text.hpp"
 #include "pipeline/option_table.hpp"
+#include "pipeline/refine_job.hpp"
 #include "pipeline/report_json.hpp"
 
 namespace delfront::cli {
@@ -111,8 +113,7 @@ class RefineCommand : public Command {
     facts.cells_before = count_cells(coarse);
     const Model model = geometry_.empty() ? Model() : read_geometry(coarse, context);
     if (!geometry_.empty()) options_.model = &model;
-    facts.fine = refine_grid(coarse, options_, facts.report, context);
-    check_result(facts.fine, context);
+    facts.fine = refine_and_check(coarse, options_, facts.report, context);
     facts.cells = count_cells(facts.fine);
     facts.warnings = all_warnings(facts.report);
     write(context, facts);
@@ -140,11 +141,7 @@ class RefineCommand : public Command {
   }
 
   void check_words() const {
-    if (options_.levels < 1)
-      throw UsageError(
-          fmt::format("--levels {}: expected how many times to halve the edges, 1 or more", options_.levels));
-    if (!(options_.feature_angle_deg >= 0 && options_.feature_angle_deg <= 180))
-      throw UsageError(fmt::format("--feature-angle {:g}: expected degrees from 0 to 180", options_.feature_angle_deg));
+    check_refine_options(options_, "--levels", "--feature-angle");
     for (const std::string& out : outputs_) {
       format_of(out, to_, true);
       refuse_to_overwrite(out);
@@ -173,50 +170,16 @@ class RefineCommand : public Command {
     context.max_cells = options.limits.max_cells;
   }
 
-  static std::string first_error(const std::vector<Finding>& findings) {
-    for (const Finding& f : findings)
-      if (f.severity == Severity::error) return f.message;
-    return "";
-  }
-
   Mesh read_grid(Context& context) const {
     const StageTimer timer(context, "read");
     Mesh mesh = read_mesh(in_, context, from_);
-    if (mesh.top_dimension() < 2)
-      throw InputError(fmt::format("{} has neither faces nor volume cells; there is no grid to refine", in_));
-    context.check_limits();
-    const std::vector<Finding> findings = check(mesh);
-    if (has_errors(findings))
-      throw InputError(fmt::format("{} is not a valid grid: {}; 'delfront check {}' shows all that is wrong", in_,
-                                   first_error(findings), in_),
-                       findings.front().places);
+    check_grid_to_refine(mesh, in_, context);
     return mesh;
   }
 
   Model read_geometry(const Mesh& grid, Context& context) const {
     const StageTimer timer(context, "read");
-    const std::string stem = fs::path(geometry_).stem().string();
-    Mesh geometry = read_mesh(geometry_, context);
-    if (grid.dimension == 2) {
-      if (geometry.num_cells(CellType::line) == 0)
-        throw InputError(
-            fmt::format("{} has no lines, which the geometry of a grid in the plane consists of; give "
-                        "e.g. airfoil coordinates (.dat) or lines as VTP",
-                        geometry_));
-      return model_of_lines(geometry, stem);
-    }
-    return build_model({{std::move(geometry), stem}}, context);
-  }
-
-  /// Never a bad grid under the asked name.
-  static void check_result(const Mesh& fine, Context& context) {
-    const StageTimer timer(context, "check");
-    context.progress("check", 0, 1, "grid");
-    const std::vector<Finding> findings = check(fine);
-    if (has_errors(findings))
-      throw MeshingError(fmt::format("the refined grid is not valid and was not written: {}", first_error(findings)),
-                         findings.front().places);
-    context.progress("check", 1, 1, "grid");
+    return geometry_to_refine_on(grid, read_mesh(geometry_, context), geometry_, context);
   }
 
   void write(Context& context, Facts& facts) const {
@@ -247,43 +210,32 @@ class RefineCommand : public Command {
 
   std::string report_json(const Facts& facts, const Context& context) const {
     using Json = nlohmann::ordered_json;
-    const RefineGridReport& report = facts.report;
     Json stages = Json::array();
     for (const StageTime& time : context.stage_times)
       stages.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
-    const Json json = {{"command", facts.command},
-                       {"version", kVersion},
-                       {"outcome", outcome_name(facts.exit_code)},
-                       {"exit_code", static_cast<int>(facts.exit_code)},
-                       {"error", facts.error.empty() ? Json(nullptr) : Json(facts.error)},
-                       {"places", to_json(facts.places, kMaxPlaces)},
-                       {"input", in_},
-                       {"geometry", geometry_},
-                       {"threads", context.threads},
-                       {"levels", report.levels},
-                       {"cells_before", facts.cells_before},
-                       {"cells", facts.cells},
-                       {"num_points", report.num_points},
-                       {"points_on_surface", report.points_on_surface},
-                       {"points_on_features", report.points_on_features},
-                       {"largest_move", report.largest_move},
-                       {"boundary_points", report.boundary_points},
-                       {"out_of_reach", report.out_of_reach},
-                       {"halved", report.halved},
-                       {"reversed", report.reversed},
-                       {"reversed_places", to_json(report.reversed_places, kMaxPlaces)},
-                       {"groups_not_in_geometry", report.groups_not_in_model},
-                       {"warnings", facts.warnings},
-                       {"stages", stages},
-                       {"seconds", context.seconds_since_start()},
-                       {"peak_memory_bytes", peak_resident_memory()},
-                       {"files_written", facts.files_written}};
+    Json json = {{"command", facts.command},
+                 {"version", kVersion},
+                 {"outcome", outcome_name(facts.exit_code)},
+                 {"exit_code", static_cast<int>(facts.exit_code)},
+                 {"error", facts.error.empty() ? Json(nullptr) : Json(facts.error)},
+                 {"places", to_json(facts.places, kMaxPlaces)},
+                 {"input", in_},
+                 {"geometry", geometry_},
+                 {"threads", context.threads},
+                 {"cells_before", facts.cells_before},
+                 {"cells", facts.cells},
+                 {"warnings", facts.warnings},
+                 {"stages", stages},
+                 {"seconds", context.seconds_since_start()},
+                 {"peak_memory_bytes", peak_resident_memory()},
+                 {"files_written", facts.files_written}};
+    json.update(to_json(facts.report));
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
 
   void print(const Facts& facts) const {
     const RefineGridReport& report = facts.report;
-    print_mesh_facts(facts.fine);
+    fmt::print("{}", mesh_facts_text(facts.fine));
     if (!geometry_.empty())
       fmt::print(
           "moved          {} points to the surface, {} to features, by {:.4g} at most; {} halfway, {} put back\n",

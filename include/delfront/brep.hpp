@@ -125,9 +125,11 @@ struct BrepFace {
   std::shared_ptr<const SmoothSurface> surface;
   bool is_reversed = false;  ///< its triangles face against the surface's normal
   std::vector<std::vector<BrepUse>> loops;
-  std::string name;      ///< faces of one name are one patch of Model
-  std::string kind;      ///< of the patch: "wall", …
-  double tolerance = 0;  ///< between the surface and its edges; below the Brep's: that
+  std::string name;                   ///< faces of one name are one patch of Model
+  std::string kind;                   ///< of the patch: "wall", …
+  std::array<RegionId, 2> regions{};  ///< behind it, out of which its triangles face, and ahead of it; invalid: none,
+                                      ///< or not known
+  double tolerance = 0;               ///< between the surface and its edges; below the Brep's: that
 };
 
 /// @brief Smooth geometry, bounded: what CAD, splines and analytic shapes give (D1).
@@ -137,6 +139,7 @@ struct Brep {
   Array<CornerId, BrepCorner> corners;
   Array<EdgeId, BrepEdge> edges;
   Array<FaceId, BrepFace> faces;
+  std::vector<std::string> regions;  ///< names of what the faces bound, where that is known; some may be empty
   double tolerance =
       0;  ///< between what should coincide; 0: 1e-9 of the diagonal; corners, edges and faces may have more
 };

@@ -52,6 +52,7 @@ struct CadReport {
   std::size_t solids = 0;          ///< none: surfaces only
   std::size_t shells = 0;          ///< closed ones and open ones
   std::size_t free_edges = 0;      ///< that bound one face only: the surface is open there
+  std::vector<CadNote> open_at;    ///< the first 1000 of them: their middle, face and length
   std::size_t internal_edges = 0;  ///< that lie within a face and bound nothing: left out
   double largest_tolerance = 0;
   std::vector<CadFace> faces;  ///< of the Brep, by number

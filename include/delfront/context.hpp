@@ -62,6 +62,10 @@ class Context {
   void check_cells(std::uint64_t cells) const;
   double seconds_since_start() const;
 
+  /// @brief For a piece of the work that is no stage of its own: the same threads, time, memory and way to cancel, but
+  /// it says nothing, and its cells are no cells of the grid.
+  Context for_a_piece() const;
+
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -2,11 +2,15 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "delfront/brep.hpp"
 #include "delfront/brep_sizes.hpp"
+#include "delfront/cad.hpp"
 #include "delfront/context.hpp"
 #include "delfront/generate.hpp"
 #include "delfront/model.hpp"
@@ -57,6 +61,29 @@ struct Estimate {
   bool is_at_least = false;                  ///< sizes are finer in places than was looked at
 };
 
+/// @brief What an input of a job holds, for programs that have it in memory.
+struct HeldInput {
+  Mesh mesh;                             ///< facets, lines or a grid; of smooth geometry its first, coarse grid
+  std::string stem;                      ///< name of patches and lines that have none
+  std::shared_ptr<const Brep> brep;      ///< smooth geometry; null: the mesh is all there is
+  std::shared_ptr<const BrepLook> look;  ///< of the smooth geometry
+  CadReport cad;                         ///< of a CAD file
+};
+
+/// @brief Read an input file, of any kind that jobs take.
+/// @param format  of facets and grids, instead of by extension
+/// @throws as read_mesh, read_geometry, read_cad
+HeldInput read_input(const std::string& path, Context& context, const std::string& format = "");
+
+/// @brief What a program that calls has to say beside the options.
+struct JobExtras {
+  /// By their entry in options.input.files: these are not read.
+  std::map<std::string, std::shared_ptr<const HeldInput>> held;
+  /// The grid in the result is what is wanted: no output need be named, and nothing is left in files that nobody asked
+  /// for.
+  bool wants_result = false;
+};
+
 /// @brief The surface grid of a file of smooth geometry.
 struct GeometryGrid {
   std::string file;
@@ -76,7 +103,9 @@ struct JobResult {
   std::vector<GeometryGrid> geometry;  ///< one a file of smooth geometry that was gridded
   Report report;  ///< filled as far as the run came; `surface.findings` also where the surface was refused
 
+  std::shared_ptr<const Mesh> partial;     ///< the grid as far as it came, where gridding failed; else null
   std::vector<std::string> failed_gates;   ///< sentences
+  std::vector<Finding> gate_failures;      ///< their places
   std::vector<std::string> files_written;  ///< grids, each complete
   std::vector<std::string> name_changes;   ///< names that a format could not hold, as sentences
   std::vector<std::string> warnings;       ///< everything logged at LogLevel::warning, and the report's warnings
@@ -110,7 +139,7 @@ std::shared_ptr<const SizeField> build_job_size_field(const Options& options, co
 /// @param command  what the user typed, for the report
 /// @post  each of files_written is complete; no other output exists that was not there before
 JobResult run_job(const Options& options, Context& context, const std::string& command = "",
-                  JobKind kind = JobKind::grid);
+                  JobKind kind = JobKind::grid, const JobExtras& extras = {});
 
 /// @brief The report as JSON text, with the effective options; `command` is what the user typed.
 std::string report_json(const JobResult& result, const Options& options, const std::string& command);

@@ -44,7 +44,9 @@ struct Model {
   Array<CurveId, Curve> curves;
   std::vector<VertexId> corners;
   std::vector<std::string> corner_names;  ///< one a corner
-  Array<RegionId, Region> regions;
+  Array<RegionId, Region> regions;        ///< those that the input declares, in its order; names are unique or empty
+  /// The region behind a triangle, out of which its normal points, and the one ahead; empty: the input says nothing.
+  Array<TriangleId, std::array<RegionId, 2>> sides;
   double feature_angle = 40;  ///< degrees, for curves and corners found by angle
 
   Box bounding_box() const;
@@ -55,9 +57,12 @@ struct Model {
 struct NamedMesh {
   Mesh mesh;
   std::string stem;
+  std::vector<std::string> regions{};  ///< what its faces bound, where that is known; "": has no name
+  std::vector<std::array<RegionId, 2>>
+      sides{};  ///< of its faces: the region behind and the one ahead; empty: not known
 };
 
-/// @brief Build a model from surface meshes: weld exactly, triangulate n-gons, name patches.
+/// @brief Build a model from surface meshes: weld exactly, triangulate n-gons, name patches and regions.
 ///
 /// Nothing is mended and nothing dropped: degenerate and duplicate facets stay, for check_surface to name. An input may
 /// hold lines or points alone. Of lines given twice the first stays.

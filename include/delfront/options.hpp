@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "delfront/point.hpp"
 
 namespace delfront {
+
+class SizeField;
 
 /// @brief A length as a person types it: "5", "2 mm", "5%" (of the bounding-box diagonal), "20c" (longest side).
 struct Length {
@@ -179,7 +182,9 @@ struct SizeOptions {
   std::vector<SizeOnOptions> on;
   std::vector<std::string> without;  ///< groups of sources that are left out
   double time = 0;                   ///< for sources that move
-  double steeper = 1;                ///< no key: sizes rise so many times as fast as growth says (see coarse_options)
+  /// No key: fields of the program that calls; they need not keep to the growth, nor have good lower bounds.
+  std::vector<std::shared_ptr<const SizeField>> fields = {};
+  double steeper = 1;  ///< no key: sizes rise so many times as fast as growth says (see coarse_options)
 };
 
 /// @brief One entry of [[planar.curve]] (D5): a line of the boundary, or in a region, given by points.

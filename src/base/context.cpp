@@ -48,6 +48,16 @@ void Context::check_cells(std::uint64_t cells) const {
                     max_cells, cells, limit_advice));
 }
 
+Context Context::for_a_piece() const {
+  Context piece = *this;
+  piece.on_progress = nullptr;
+  piece.on_log = nullptr;
+  piece.max_cells = 0;
+  piece.stage_times.clear();
+  piece.is_timed = false;
+  return piece;
+}
+
 double Context::seconds_since_start() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }

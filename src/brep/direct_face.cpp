@@ -115,8 +115,8 @@ void take(const SmoothSurface& surface, const FaceSupport& support, const Region
 void grid_directly(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges,
                    const WantedSize& size, FaceGrid& grid, Context& context) {
   grid.gave_up.clear();
-  Context quiet;  // the stages of other gridders are not those of this run
-  quiet.cancel = context.cancel;
+  Context quiet = context.for_a_piece();
+  quiet.threads = 1;
   try {
     const FaceSupport fine = make_face_support(brep, face, edges, quiet);
     WorkingSize working(size.asked(), build_bend_guard(fine.model, size.asked(), quiet));

@@ -6,6 +6,8 @@
 #include <map>
 
 #include "base/parallel.hpp"
+#include "delfront/errors.hpp"
+#include "fmt/format.h"
 
 namespace delfront {
 namespace {
@@ -14,6 +16,7 @@ constexpr std::size_t kLeastPanels = 32, kMostPanels = std::size_t(1) << 22;
 constexpr std::size_t kEnoughPanels = std::size_t(1) << 13;  ///< for densities that jump, and never converge
 constexpr double kPanelsPerSide = 8;
 constexpr double kConverged = 1e-4;  ///< change of the integral, of itself
+constexpr double kMostSides = 1e8;   ///< of an edge
 constexpr double kAlmost = 1e-9;     ///< of where one more part is taken, so that equal curves get equal numbers
 
 /// To 24 bits of the range: rounding, which a turned or scaled copy has otherwise, does not change a grid.
@@ -84,6 +87,11 @@ std::vector<double> divide_curve(const std::function<CurveSample(double)>& sampl
     before = now;
   }
   const double all = sum.back();
+  if (!(all < kMostSides))
+    throw LimitError(
+        fmt::format("stopped before gridding: sizes ask for {:.1e} sides on one edge; ask for larger sizes "
+                    "(--hmax, --hmin, --growth)",
+                    all));
   // as many as make sides longer or shorter than wanted by the least factor: of at most sqrt(2), but of one short side
   const double fewer = std::floor(all);
   const bool takes_more = all * all * (1 + kAlmost) >= fewer * (fewer + 1);

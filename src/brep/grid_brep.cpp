@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <unordered_map>
 
 #include "base/parallel.hpp"
@@ -52,6 +53,7 @@ class BrepGridder {
   Model run() {
     for (report_.rounds = 1; report_.rounds <= std::size_t(options_.most_rounds); ++report_.rounds) {
       context_.progress("surface", report_.rounds - 1, 0, "rounds");
+      crossing_.clear();
       if (!grid_faces()) continue;
       const StageTimer timer(context_, "crossings");
       Model model = assemble();
@@ -59,6 +61,7 @@ class BrepGridder {
       fill_report(model);
       return model;
     }
+    if (!crossing_.empty()) throw InputError(crossing_, {{why_at_, {}}});
     throw MeshingError(fmt::format("no valid grid was found: {}; lower the size there", why_), {{why_at_, {}}});
   }
 
@@ -220,7 +223,8 @@ class BrepGridder {
   /// Sizes are lowered at the place, each third time all over the face.
   void fail(FaceId f, const std::string& why, Point at) {
     const BrepFace& face = brep_.faces[f];
-    why_ = face.name.empty() ? fmt::format("face {}: {}", f.value, why) : fmt::format("face '{}': {}", face.name, why);
+    why_ =
+        face.name.empty() ? fmt::format("face {}: {}", f.value + 1, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
     has_failed_[f.index()] = true;
     lower_at(at);
@@ -273,7 +277,40 @@ class BrepGridder {
           is_done[f] = true;
           fail(FaceId(std::size_t(f)), finding.kind, place.at);
         }
+    note_crossing(findings);
     return findings.empty();
+  }
+
+  /// Faces without a common edge that meet: where that stays so however short sides get, the geometry is to blame.
+  void note_crossing(const std::vector<Finding>& findings) {
+    for (const Finding& finding : findings)
+      for (const Place& place : finding.places) {
+        if (place.ids.size() != 2 || std::max(place.ids[0], place.ids[1]) >= grids_.size()) continue;
+        const FaceId a(std::size_t(place.ids[0])), b(std::size_t(place.ids[1]));
+        if (a == b || have_common_edge(brep_.faces[a], brep_.faces[b])) continue;
+        crossing_ = fmt::format(
+            "{} and {} cross or touch each other at ({:.6g}, {:.6g}, {:.6g}) without a common edge there; join their "
+            "shapes "
+            "where the geometry is made, or move them apart",
+            name_of(a), name_of(b), place.at.x, place.at.y, place.at.z);
+        why_at_ = place.at;
+        return;
+      }
+  }
+
+  static bool have_common_edge(const BrepFace& a, const BrepFace& b) {
+    std::set<EdgeId> edges;
+    for (const auto& loop : a.loops)
+      for (const BrepUse& use : loop) edges.insert(use.edge);
+    for (const auto& loop : b.loops)
+      for (const BrepUse& use : loop)
+        if (edges.contains(use.edge)) return true;
+    return false;
+  }
+
+  std::string name_of(FaceId f) const {
+    const std::string& name = brep_.faces[f].name;
+    return name.empty() ? fmt::format("face {}", f.value + 1) : fmt::format("face {} ('{}')", f.value + 1, name);
   }
 
   void fill_report(const Model& m) {
@@ -326,6 +363,7 @@ class BrepGridder {
   std::vector<std::vector<double>> sizes_;  ///< by face: at its points in the last round; empty: it failed
   std::size_t num_vertices_ = 0;
   bool is_bridged_ = true;  ///< where that is asked for; no longer where bridges made triangles cross
+  std::string crossing_;    ///< faces that the last round found to cross
   std::string why_;
   Point why_at_;
 };

@@ -240,8 +240,8 @@ class ChartedPart {
     PlanarGrid plane;
     plane.complex.point.assign(domain_.points.begin(), domain_.points.end());
     PlanarKernel kernel(plane.complex);
-    Context quiet;  // the stages of planar grids are not those of this run
-    quiet.cancel = context.cancel;
+    Context quiet = context.for_a_piece();
+    quiet.threads = 1;
     if (!build_delaunay(plane.complex, kernel, quiet).empty())
       return grid_.fail("points of its border meet in the parameter plane", grid_.points[origin_[0]].at);
     std::vector<VertexIndex> same_as(domain_.points.size());

@@ -47,9 +47,7 @@ BrepLook look_at_brep(const Brep& brep, Context& context) {
   how.checks_crossings = false;
   how.least_size = kLeastShare * look.extent.body;
   how.keeps_parameters = true;
-  Context quiet;  // a look only
-  quiet.threads = context.threads;
-  quiet.cancel = context.cancel;
+  Context quiet = context.for_a_piece();
   look.grid = grid_brep(brep, LookSize(look.extent), how, look.report, quiet);
   return look;
 }

@@ -41,6 +41,7 @@ class Builder {
       context_.progress("read", f, data_.faces.size(), "CAD faces");
       add_face(f);
     }
+    brep_.regions = data_.regions;
     note_suspicious_edges();
     return std::move(brep_);
   }
@@ -144,6 +145,8 @@ class Builder {
     face.is_reversed = given.is_reversed;
     face.name = given.name;
     face.tolerance = given.tolerance;
+    for (std::size_t k = 0; k < 2; ++k)
+      if (given.regions[k] >= 0) face.regions[k] = RegionId(std::size_t(given.regions[k]));
     if (given.loops.empty())
       throw InputError(face_name(f) + " has no edges, and its surface no natural end: it cannot be gridded");
     for (const auto& loop : given.loops) add_loop(f, loop, face);

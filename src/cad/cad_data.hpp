@@ -14,7 +14,7 @@
 
 namespace delfront::cad {
 
-inline constexpr int kInterfaceVersion = 1;
+inline constexpr int kInterfaceVersion = 2;
 
 /// Evaluators never throw: what fails gives not a number. From several threads at once.
 struct OtherCurve {
@@ -86,6 +86,7 @@ struct Face {
   double tolerance = 0;
   std::string name;  ///< as the grid will have it
   CadFace facts;
+  std::array<int, 2> regions{-1, -1};  ///< behind it, out of which its normal points, and ahead; -1: none of them
 };
 
 struct Request {
@@ -102,7 +103,8 @@ struct Result {
   std::vector<Vertex> vertices;
   std::vector<Edge> edges;
   std::vector<Face> faces;
-  CadReport report;  ///< all but faces
+  std::vector<std::string> regions;  ///< names of the solids, in the order of the file; some may have none
+  CadReport report;                  ///< all but faces
 };
 
 struct ModuleInfo {

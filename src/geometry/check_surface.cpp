@@ -164,7 +164,10 @@ std::size_t orient_shells(Model& model, Context& context) {
   const Surface surface(model);
   const std::vector<bool> turn = find_triangles_to_turn(surface, find_shells(surface, context));
   for (std::size_t t = 0; t < turn.size(); ++t)
-    if (turn[t]) std::swap(model.triangles[TriangleId(t)][1], model.triangles[TriangleId(t)][2]);
+    if (turn[t]) {
+      std::swap(model.triangles[TriangleId(t)][1], model.triangles[TriangleId(t)][2]);
+      if (t < model.sides.size()) std::swap(model.sides[TriangleId(t)][0], model.sides[TriangleId(t)][1]);
+    }
   return std::size_t(std::count(turn.begin(), turn.end(), true));
 }
 

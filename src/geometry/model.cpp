@@ -42,6 +42,8 @@ class ModelBuilder {
   void add_face(std::span<const VertexId> corners, PatchId patch, const std::string& stem);
   void add_curves(const NamedMesh& input);
   void add_corners(const NamedMesh& input);
+  void add_regions(const NamedMesh& input);
+  void note_sides(const NamedMesh& input, std::size_t face, std::size_t first_triangle);
 
   Context& context_;
   Model model_;
@@ -50,6 +52,9 @@ class ModelBuilder {
   std::map<std::uint32_t, PatchId> patch_of_group_;  // of the input being added
   std::set<std::array<VertexId, 2>> curve_edges_;    // lower end first
   std::set<VertexId> is_corner_;
+  std::set<std::string> region_names_;
+  std::map<std::string, std::size_t> region_number_;  // the last that a name has got
+  std::size_t first_region_ = 0;                      // of the input being added
   std::size_t num_repeated_lines_ = 0;
   std::size_t num_points_read_ = 0, num_faces_ = 0;
   std::size_t num_bad_ = 0;  // faces with a coordinate that is not finite …
@@ -172,8 +177,30 @@ void ModelBuilder::add_corners(const NamedMesh& input) {
   }
 }
 
+/// Names that several have are numbered: name, name_2, …
+void ModelBuilder::add_regions(const NamedMesh& input) {
+  first_region_ = model_.regions.size();
+  for (const std::string& given : input.regions) {
+    std::string name = given;
+    std::size_t& number = region_number_.try_emplace(given, 1).first->second;
+    while (!given.empty() && !region_names_.insert(name).second) name = fmt::format("{}_{}", given, ++number);
+    model_.regions.push_back({name});
+  }
+}
+
+/// Of the triangles that the last face became.
+void ModelBuilder::note_sides(const NamedMesh& input, std::size_t face, std::size_t first_triangle) {
+  if (face >= input.sides.size()) return;
+  std::array<RegionId, 2> sides = input.sides[face];
+  for (RegionId& region : sides)
+    if (region.is_valid()) region = RegionId(region.index() + first_region_);
+  model_.sides.resize(first_triangle);  // what came before may have none
+  while (model_.sides.size() < model_.triangles.size()) model_.sides.push_back(sides);
+}
+
 void ModelBuilder::add(const NamedMesh& input) {
   weld(input);
+  add_regions(input);
   add_curves(input);
   add_corners(input);
   patch_of_group_.clear();
@@ -184,7 +211,9 @@ void ModelBuilder::add(const NamedMesh& input) {
     for (std::size_t i = 0; i < size; ++i) {
       if (num_faces_ % 65536 == 0) context_.check_limits();
       const GroupId group = i < block.group.size() ? block.group[i] : GroupId();
+      const std::size_t face = num_faces_ - faces_before, first_triangle = model_.triangles.size();
       add_face(block[i], patch_for(input, group), input.stem);
+      note_sides(input, face, first_triangle);
     }
   }
   if (num_faces_ == faces_before && !input.mesh.find_block(CellType::line) && !input.mesh.find_block(CellType::vertex))

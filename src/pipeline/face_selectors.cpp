@@ -236,17 +236,30 @@ void name_selected_faces(const std::vector<BoundaryOptions>& boundaries, const s
                          GeometryInput& input) {
   if (std::none_of(boundaries.begin(), boundaries.end(), [](const auto& b) { return b.selects_faces(); })) return;
   std::vector<std::pair<std::size_t, std::string>> named;  // messages name faces as the file does
+  std::map<std::size_t, std::string> last;                 // by face
   const FaceSelection selection(file, cad, input);
+  const auto fail = [](const BoundaryOptions& boundary, const std::string& why) {
+    throw UsageError(
+        fmt::format("{}boundaries.{}: {}", boundary.set_at.empty() ? "" : boundary.set_at + ": ", boundary.name, why));
+  };
   for (const BoundaryOptions& boundary : boundaries) {
     if (!boundary.selects_faces()) continue;
     try {
       for (const std::size_t face : selection.select(boundary)) named.emplace_back(face, boundary.name);
     } catch (const UsageError& e) {
-      throw UsageError(fmt::format("{}boundaries.{}: {}", boundary.set_at.empty() ? "" : boundary.set_at + ": ",
-                                   boundary.name, e.what()));
+      fail(boundary, e.what());
     }
   }
-  for (const auto& [face, name] : named) input.brep.faces[FaceId(face)].name = name;
+  for (const auto& [face, name] : named) last[face] = name;
+  for (const BoundaryOptions& boundary : boundaries)
+    for (const auto& [face, name] : named)
+      if (name == boundary.name &&
+          std::none_of(last.begin(), last.end(), [&](const auto& l) { return l.second == name; }))
+        fail(boundary,
+             fmt::format("boundaries that come later select all of its faces (face {}: '{}'); of those that select "
+                         "the same face the last one has it",
+                         face + 1, last[face]));
+  for (const auto& [face, name] : last) input.brep.faces[FaceId(face)].name = name;
   name_patches(input.brep, input.look.grid);
 }
 

@@ -6,13 +6,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <mutex>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
+#include "delfront/io.hpp"
 #include "delfront/size_sources.hpp"
 #include "delfront/uniform_size.hpp"
 #include "pipeline/boundaries.hpp"
@@ -89,15 +94,37 @@ void tell_notes(const std::vector<CadNote>& notes, const std::string& path, LogL
   }
 }
 
+std::string first_place(const CadReport& cad) {
+  if (cad.open_at.empty()) return {};
+  const Point at = cad.open_at[0].at;
+  return fmt::format(" ({} at ({:g}, {:g}, {:g}))", cad.free_edges == 1 ? "its middle" : "the middle of the first",
+                     at.x, at.y, at.z);
+}
+
 void tell(const CadReport& cad, const std::string& path, Context& context) {
   tell_notes(cad.repairs, path, LogLevel::info, context);
   tell_notes(cad.suspicious, path, LogLevel::warning, context);
   if (cad.free_edges > 0)
     context.warn(
-        fmt::format("{}: {} edges bound one face only: the surface is open there, and bounds no volume unless "
+        fmt::format("{}: {} edges bound one face only{}: the surface is open there, and bounds no volume unless "
                     "something else closes it (the surface alone: --stop-after surface)",
-                    path, cad.free_edges));
+                    path, cad.free_edges, first_place(cad)));
 }
+
+/// Whoever holds it may read a CAD file; the others wait, and can be stopped.
+class CadTurn {
+ public:
+  explicit CadTurn(const Context& context) : lock_(mutex(), std::defer_lock) {
+    while (!lock_.try_lock_for(std::chrono::milliseconds(50))) context.check_limits();
+  }
+
+ private:
+  static std::timed_mutex& mutex() {
+    static std::timed_mutex of_process;
+    return of_process;
+  }
+  std::unique_lock<std::timed_mutex> lock_;
+};
 
 }  // namespace
 
@@ -136,28 +163,61 @@ BrepGoals geometry_goals(const Options& options, const BrepExtent& extent) {
   return goals;
 }
 
-Mesh grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
-                   BrepGridReport& report) {
-  return surface_mesh(grid_brep(brep, size, gridding_options(options, measure_extent(brep)), report, context));
+NamedMesh named_surface(const Model& grid, const Brep& brep, const std::string& stem) {
+  NamedMesh named{surface_mesh(grid), stem, brep.regions, {}};
+  if (brep.regions.empty()) return named;
+  for (const std::uint32_t face : grid.input_face) named.sides.push_back(brep.faces[FaceId(std::size_t(face))].regions);
+  return named;
 }
 
-Mesh grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
-                            Context& context, BrepRounds& report) {
-  return surface_mesh(grid_brep_to_goals(input.brep, std::move(size), gridding_options(options, input.look.extent),
-                                         geometry_goals(options, input.look.extent), report, context));
+Model grid_geometry(const Brep& brep, const SizeField& size, const Options& options, Context& context,
+                    BrepGridReport& report) {
+  return grid_brep(brep, size, gridding_options(options, measure_extent(brep)), report, context);
 }
 
-Mesh grid_to_look_at(const Brep& brep, Context& context, BrepGridReport& report) {
+Model grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const SizeField> size, const Options& options,
+                             Context& context, BrepRounds& report) {
+  return grid_brep_to_goals(input.brep, std::move(size), gridding_options(options, input.look.extent),
+                            geometry_goals(options, input.look.extent), report, context);
+}
+
+Mesh grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGridReport& report) {
   const Options usual;
   const BrepLook look = look_at_brep(brep, context);
-  return grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report);
+  if (is_quick) {
+    report = look.report;
+    return surface_mesh(look.grid);
+  }
+  return surface_mesh(
+      grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report));
 }
 
 bool is_smooth_file(const std::string& path) { return is_geometry_file(path) || is_cad_file(path); }
 
+bool is_smooth_input(const std::string& path, const JobExtras& extras) {
+  const auto held = extras.held.find(path);
+  return held == extras.held.end() ? is_smooth_file(path) : held->second->brep != nullptr;
+}
+
+HeldInput read_input(const std::string& path, Context& context, const std::string& format) {
+  HeldInput held;
+  if (!is_smooth_file(path)) {
+    const std::filesystem::path whole(path);
+    held.stem = (whole.has_filename() ? whole : whole.parent_path()).stem().string();
+    held.mesh = read_mesh(path, context, format);
+    return held;
+  }
+  held.stem = geometry_stem(path);
+  held.brep = std::make_shared<Brep>(read_brep(path, context, held.cad));
+  held.look = std::make_shared<BrepLook>(look_at_brep(*held.brep, context));
+  held.mesh = surface_mesh(held.look->grid);
+  return held;
+}
+
 Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
   Brep brep;
   if (is_cad_file(path)) {
+    const CadTurn turn(context);
     brep = read_cad(path, {}, cad, context);
     tell(cad, path, context);
   } else {
@@ -166,6 +226,39 @@ Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
   for (BrepFace& face : brep.faces)
     if (face.name.empty()) face.name = geometry_stem(path);
   return brep;
+}
+
+std::string doubt_of(const CadReport& cad) {
+  for (const CadNote& note : cad.suspicious)
+    for (const char* kind : {"not_translated", "lost_face", "not_mended", "not_imprinted", "parameter_curve_off",
+                             "edge_off_its_corner", "edge_without_curve"})
+      if (note.kind == kind) return note.message;
+  return {};
+}
+
+void with_file(const std::string& path, const std::string& doubt, const std::function<void()>& work) {
+  const std::string hint = doubt.empty() ? "" : "; suspicious about the file: " + doubt;
+  const auto said = [&](const char* what) {
+    const std::string message = what;
+    return (message.starts_with(path) ? message : path + ": " + message) + hint;
+  };
+  const auto no_memory = [&] {
+    return LimitError(
+        fmt::format("{}: its grid takes more memory than there is; ask for larger sizes (--hmax), or look "
+                    "whether the geometry is what it should be (delfront info){}",
+                    path, hint));
+  };
+  try {
+    work();
+  } catch (const MeshingError& e) {
+    throw MeshingError(said(e.what()), e.places, e.partial);
+  } catch (const InputError& e) {
+    throw InputError(said(e.what()), e.places);
+  } catch (const std::bad_alloc&) {
+    throw no_memory();
+  } catch (const std::length_error&) {  // more than any memory holds
+    throw no_memory();
+  }
 }
 
 std::string geometry_stem(const std::string& path) {

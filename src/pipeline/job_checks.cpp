@@ -101,13 +101,13 @@ void check_domain(const Options& options) {
     throw usage_error(options, "domain.enclose.h", "there is no far field; add e.g. --farfield box:10c");
 }
 
-void check_files(const Options& options) {
+void check_files(const Options& options, const JobExtras& extras) {
   std::size_t smooth = 0;
   for (std::size_t i = 0; i < options.input.files.size(); ++i) {
     const std::string& path = options.input.files[i];
-    if (is_smooth_file(path))
+    if (is_smooth_input(path, extras))
       ++smooth;
-    else
+    else if (!extras.held.contains(path))
       with_place(options, fmt::format("input.files[{}]", i), [&] { format_of(path); });
   }
   if (options.surface.method == "delaunay" && smooth > 0 && smooth == options.input.files.size())
@@ -187,10 +187,10 @@ void check_output_units(const Options& options) {
     throw usage_error(options, "output.units", "the unit of the input is not known; say it with --units (input.units)");
 }
 
-void check_job(const Options& options) {
+void check_job(const Options& options, const JobExtras& extras) {
   if (options.input.files.empty() && options.planar.curves.empty())
     throw UsageError("no input: name a surface file (STL, OBJ, PLY, OFF, …)");
-  if (writes_grid(options) && options.output.files.empty())
+  if (writes_grid(options) && options.output.files.empty() && !extras.wants_result)
     throw UsageError("no output: say where the grid goes, e.g. -o grid.vtu (or --stop-after geometry to look only)");
   check_domain(options);
   check_sizes(options);
@@ -199,7 +199,7 @@ void check_job(const Options& options) {
   if (std::none_of(files.begin(), files.end(), [](const std::string& file) { return is_cad_file(file); }))
     check_output_units(options);  // CAD may say its unit
   with_place(options, "output.require", [&] { try_gates(options.output.require); });
-  check_files(options);
+  check_files(options, extras);
 }
 
 /// Of sources, boxes and names; errors are said with the entry's place.

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "delfront/job.hpp"
 #include "delfront/options.hpp"
 
 namespace delfront {
@@ -10,7 +11,7 @@ namespace delfront {
 /// @brief What is wrong with the options as a whole, and with the places of the outputs.
 /// @throws UsageError  the key and where it was set
 /// @throws IoError     an output that cannot be written
-void check_job(const Options& options);
+void check_job(const Options& options, const JobExtras& extras);
 
 /// @brief That lengths can be turned into the output's unit; of CAD once it is read, for it may say its own.
 /// @throws UsageError

@@ -61,7 +61,7 @@ std::vector<Finding> all_findings(Run& run) {
   const JobResult& result = run.result;
   std::vector<Finding> findings = surface_findings(run);
   if (result.exit_code == ExitCode::gate_not_met) {
-    findings.insert(findings.end(), run.gate_failures.begin(), run.gate_failures.end());
+    findings.insert(findings.end(), result.gate_failures.begin(), result.gate_failures.end());
     scale_to_output(run.options, findings);
     return findings;
   }
@@ -101,12 +101,19 @@ bool has_verdict(ExitCode code) {
          code == ExitCode::meshing_failed;
 }
 
+/// A program that takes the result, and named no output, has it all in memory.
+bool has_no_place(const Run& run) { return run.extras.wants_result && run.options.output.files.empty(); }
+
 }  // namespace
 
 void leave_defects(Run& run) {
   JobResult& result = run.result;
   const bool is_asked_for = !run.options.output.defects.empty();
   if (result.exit_code == ExitCode::usage || result.exit_code == ExitCode::cannot_write) return;
+  if (!is_asked_for && has_no_place(run)) {
+    surface_findings(run);
+    return;
+  }
   if (!has_verdict(result.exit_code) && !is_asked_for) return;
   const std::string path = is_asked_for ? run.options.output.defects : beside_output(run.options, "_defects.vtp");
   const std::vector<Finding> findings = all_findings(run);
@@ -128,15 +135,15 @@ void leave_defects(Run& run) {
 
 void leave_partial_grid(Run& run) {
   JobResult& result = run.result;
-  if (!has_verdict(result.exit_code)) return;
+  if (!has_verdict(result.exit_code) || has_no_place(run)) return;
   const std::string path = beside_output(run.options, "_partial.vtu");
-  if (result.exit_code != ExitCode::meshing_failed || run.partial.top_dimension() < 2)
+  if (result.exit_code != ExitCode::meshing_failed || !result.partial || result.partial->top_dimension() < 2)
     return remove_stale(path, kPartialMark, run);
   try {
     if (find_same_file(path, run.options.input.files) || find_same_file(path, run.options.output.files))
       throw UsageError(path + " is an input, or the name of a grid");
     Context quiet;
-    write_mesh(run.partial, path, quiet);
+    write_mesh(*result.partial, path, quiet);
     result.partial_file = path;
   } catch (const Error& e) {
     result.warnings.push_back(fmt::format("no partial grid: {}", e.what()));

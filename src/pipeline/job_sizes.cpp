@@ -16,7 +16,9 @@
 #include "pipeline/kept_domain.hpp"
 #include "pipeline/option_table.hpp"
 #include "sizing/asked_sizes.hpp"
+#include "sizing/sampled_bounds.hpp"
 #include "sizing/size_octree.hpp"
+#include "sizing/within_domain.hpp"
 
 namespace delfront {
 
@@ -79,8 +81,8 @@ FieldPointer build_expression_part(const Options& options, const Model& model, c
     sizes.second = optional_texts(asked.second);
     sizes.domain = domain;
     // Clamped first: where a formula falls towards 0, growth need not be seen to below hmin.
-    FieldPointer clamped =
-        combine_size_fields({build_expression_size_field(sizes, context)}, hmin_of(options), hmax_of(options));
+    FieldPointer clamped = combine_size_fields({ask_within(build_expression_size_field(sizes, context), domain)},
+                                               hmin_of(options), hmax_of(options));
     return limit_growth(std::move(clamped), domain, growth, context);
   } catch (const ExpressionError& e) {
     throw usage_error(options, "size.expression." + e.part, e.what());
@@ -176,6 +178,16 @@ FieldPointer build_solution_part(const Options& options, const Box& domain, Cont
   });
 }
 
+/// Fields of the program that calls: nothing is known of them but what they answer.
+void add_parts_of_caller(const Options& options, const Model& model, const Box& domain, double growth,
+                         std::vector<FieldPointer>& parts, Context& context) {
+  for (const FieldPointer& field : options.size.fields) {
+    FieldPointer clamped = combine_size_fields({ask_within(field, domain)}, hmin_of(options), hmax_of(options));
+    clamped = sample_bounds(std::move(clamped), domain, model.points, context);
+    parts.push_back(limit_growth(std::move(clamped), domain, growth, context));
+  }
+}
+
 /// The field at the nodes of a grid that is refined to it (S8): points are those of an octree as fine as cells would
 /// be.
 FieldPointer keep_on_grid(const Options& options, const SizeField& field, const Box& domain, double growth,
@@ -214,6 +226,7 @@ FieldPointer build_job_size_field(const Options& options, const Model& model, co
     parts.push_back(build_source_part(options, model, growth, is_kept, context));
     parts.push_back(build_expression_part(options, model, domain, growth, context));
     parts.push_back(build_solution_part(options, domain, context));
+    add_parts_of_caller(options, model, domain, growth, parts, context);
   }
   std::erase(parts, nullptr);
   if (parts.empty()) return nullptr;

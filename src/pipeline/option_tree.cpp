@@ -216,7 +216,9 @@ void apply_named(const EntryTable& table, Options& options, const std::string& p
 /// A table that may be given by its main entry alone: gap = 3 for gap = { cells = 3 }.
 std::string main_entry(const std::string& path) {
   static const std::map<std::string, std::string> entries = {
-      {"size.expression", "delta"}, {"size.gap", "cells"}, {"size.proximity", "cells"}, {"size.background", "file"}};
+      {"size.expression", "delta"}, {"size.gap", "cells"},  {"size.proximity", "cells"},
+      {"size.background", "file"},  {"surface", "method"},  {"volume", "method"},
+      {"planar", "method"},         {"improve", "enabled"}, {"refine", "levels"}};
   const auto it = entries.find(path);
   return it == entries.end() ? "" : it->second;
 }

@@ -21,12 +21,6 @@ namespace delfront {
 
 namespace {
 
-bool is_of_lines(const Mesh& mesh) {
-  return mesh.num_cells(CellType::line) > 0 && mesh.top_dimension() <= 2 &&
-         (mesh.dimension == 2 || mesh.top_dimension() == 1) &&
-         std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p.z == 0; });
-}
-
 /// Curves take the place of patches, so that one selection serves both.
 CurveId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, PlanarDomain& domain, CurveId far_field) {
   Model stand_in;
@@ -89,8 +83,14 @@ Mesh mesh_of_curve(const PlanarCurveOptions& curve, const LengthScale& scale, co
 
 }  // namespace
 
+bool is_planar_input(const Mesh& mesh) {
+  return mesh.num_cells(CellType::line) > 0 && mesh.top_dimension() <= 2 &&
+         (mesh.dimension == 2 || mesh.top_dimension() == 1) &&
+         std::all_of(mesh.points.begin(), mesh.points.end(), [](const Point& p) { return p.z == 0; });
+}
+
 bool is_planar_job(const std::vector<NamedMesh>& inputs) {
-  return std::all_of(inputs.begin(), inputs.end(), [](const NamedMesh& input) { return is_of_lines(input.mesh); });
+  return std::all_of(inputs.begin(), inputs.end(), [](const NamedMesh& input) { return is_planar_input(input.mesh); });
 }
 
 CurveId set_curves(PlanarDomain& domain, Options& options, const LengthScale& scale, Context& context) {

@@ -4,6 +4,9 @@
 
 namespace delfront {
 
+/// @brief Whether a mesh is one in the plane z = 0: lines, or a grid with its boundary's lines.
+bool is_planar_input(const Mesh& mesh);
+
 /// @brief Whether all inputs are lines in the plane z = 0: then the job is one in the plane.
 bool is_planar_job(const std::vector<NamedMesh>& inputs);
 

@@ -326,6 +326,20 @@ Json to_json(const QualityReport& r) {
           {"measures", measures}};
 }
 
+Json to_json(const RefineGridReport& r) {
+  return {{"levels", r.levels},
+          {"num_points", r.num_points},
+          {"points_on_surface", r.points_on_surface},
+          {"points_on_features", r.points_on_features},
+          {"largest_move", number(r.largest_move)},
+          {"boundary_points", r.boundary_points},
+          {"out_of_reach", r.out_of_reach},
+          {"halved", r.halved},
+          {"reversed", r.reversed},
+          {"reversed_places", to_json(r.reversed_places, kMaxPlaces)},
+          {"groups_not_in_geometry", r.groups_not_in_model}};
+}
+
 const char* severity_name(Severity severity) {
   switch (severity) {
     case Severity::note:

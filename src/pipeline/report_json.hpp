@@ -6,6 +6,7 @@
 #include "delfront/findings.hpp"
 #include "delfront/grid_check.hpp"
 #include "delfront/job.hpp"
+#include "delfront/refine_grid.hpp"
 #include "delfront/surface_check.hpp"
 
 namespace delfront {
@@ -15,6 +16,7 @@ nlohmann::ordered_json to_json(const std::vector<Place>& places, std::size_t mos
 nlohmann::ordered_json to_json(const std::vector<Finding>& findings);
 nlohmann::ordered_json to_json(const SurfaceReport& report);
 nlohmann::ordered_json to_json(const QualityReport& report);
+nlohmann::ordered_json to_json(const RefineGridReport& report);
 
 /// @return "error", "warning", "note"
 const char* severity_name(Severity severity);

@@ -16,12 +16,11 @@ struct Run {
   Context& context;
   JobResult& result;
   std::vector<NamedMesh> inputs;
-  PatchId far_field;                   ///< the patch of domain.enclose, where there is one
-  std::vector<Finding> gate_failures;  ///< of a grid that does not meet output.require
-  Mesh partial;                        ///< what there is of the grid where gridding failed
+  PatchId far_field;  ///< the patch of domain.enclose, where there is one
   JobKind kind = JobKind::grid;
   Model geometry;  ///< where new boundary points of refine.levels belong; empty: in the middle of their edges
   std::vector<GeometryInput> smooth;  ///< inputs whose mesh is made from them
+  JobExtras extras = {};
 };
 
 inline bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }

@@ -70,21 +70,31 @@ void say_what_is_unused(const Mesh& mesh, const std::string& path, Context& cont
                            is_planar_grid ? "boundary lines" : "faces"));
 }
 
+/// What the caller holds of an input; null: it is to be read.
+const HeldInput* held_input(const Run& run, const std::string& path) {
+  const auto held = run.extras.held.find(path);
+  return held == run.extras.held.end() ? nullptr : held->second.get();
+}
+
 /// Smooth geometry has a grid to look at until sizes are known.
 void read_smooth(Run& run, const std::string& path) {
   CadReport cad;
-  GeometryInput smooth{run.inputs.size(), {}, {}};
+  GeometryInput smooth{run.inputs.size(), {}, {}, {}};
+  const HeldInput* const held = held_input(run, path);
   {
     const StageTimer timer(run.context, "read");
-    smooth.brep = read_brep(path, run.context, cad);
+    if (held) cad = held->cad;
+    smooth.brep = held ? *held->brep : read_brep(path, run.context, cad);
+    smooth.doubt = doubt_of(cad);
   }
   Options& options = run.options;  // several files might differ in their units
   if (options.input.units == "auto" && options.input.files.size() == 1 && metres_per_unit(cad.unit) > 0)
     options.input.units = cad.unit;
   const StageTimer timer(run.context, "look");
-  smooth.look = look_at_brep(smooth.brep, run.context);
+  with_file(path, smooth.doubt,
+            [&] { smooth.look = held && held->look ? *held->look : look_at_brep(smooth.brep, run.context); });
   name_selected_faces(run.options.boundaries, path, cad, smooth);
-  run.inputs.push_back({surface_mesh(smooth.look.grid), stem_of(path)});
+  run.inputs.push_back(named_surface(smooth.look.grid, smooth.brep, held ? held->stem : stem_of(path)));
   run.smooth.push_back(std::move(smooth));
 }
 
@@ -92,12 +102,15 @@ void read_inputs(Run& run) {
   const std::vector<std::string>& files = run.options.input.files;
   for (std::size_t i = 0; i < files.size(); ++i) {
     run.context.progress("read", i, files.size(), "files");
-    if (is_smooth_file(files[i])) read_smooth(run, files[i]);
+    const HeldInput* const held = held_input(run, files[i]);
+    const bool is_smooth = is_smooth_input(files[i], run.extras);
+    if (is_smooth) read_smooth(run, files[i]);
     const StageTimer timer(run.context, "read");
-    if (!is_smooth_file(files[i])) run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
+    if (held && !is_smooth) run.inputs.push_back({held->mesh, held->stem});
+    if (!held && !is_smooth) run.inputs.push_back({read_mesh(files[i], run.context), stem_of(files[i])});
     InputFile file{files[i], 0, "", run.inputs.back().mesh.points.size(), 0};
     for (const CellBlock& block : run.inputs.back().mesh.blocks) file.num_cells += block.size();
-    hash_file(file);
+    if (!held) hash_file(file);
     say_what_is_unused(run.inputs.back().mesh, files[i], run.context);
     run.result.inputs.push_back(std::move(file));
   }
@@ -209,15 +222,21 @@ void grid_smooth(Run& run, Model& model) {
   std::vector<NamedMesh> fine = run.inputs;
   for (const GeometryInput& smooth : run.smooth) {
     std::shared_ptr<const SizeField> size = geometry_sizes(smooth.brep, smooth.look, options, asked, run.context);
+    refuse_too_many_triangles(smooth.look.grid, *size, options.refine.levels, run.context);
     GeometryGrid made{options.input.files[smooth.input], {}};
+    const auto named = [&](const Model& grid) {
+      return named_surface(grid, smooth.brep, run.inputs[smooth.input].stem);
+    };
     if (options.refine.levels == 0) {
-      run.inputs[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+      with_file(made.file, smooth.doubt, [&] {
+        run.inputs[smooth.input] = named(grid_geometry_to_goals(smooth, size, options, run.context, made.rounds));
+      });
     } else {
       BrepGridReport coarse;
       if (run.geometry.points.empty())
-        fine[smooth.input].mesh = grid_geometry_to_goals(smooth, size, options, run.context, made.rounds);
+        fine[smooth.input] = named(grid_geometry_to_goals(smooth, size, options, run.context, made.rounds));
       size = coarse_sizes(std::move(size), options, model.bounding_box(), run.context);
-      run.inputs[smooth.input].mesh = grid_geometry(smooth.brep, *size, options, run.context, coarse);
+      run.inputs[smooth.input] = named(grid_geometry(smooth.brep, *size, options, run.context, coarse));
     }
     log_rounds(made, run.context);
     if (!made.rounds.rounds.empty()) run.result.geometry.push_back(std::move(made));
@@ -301,7 +320,7 @@ void judge_grid(Run& run) {
   if (run.result.failed_gates.empty()) return;
   Context quiet;  // looking for the places must not cost the grid
   quiet.threads = run.context.threads;
-  run.gate_failures = find_gate_failures(run.result.mesh, gates, quiet);
+  run.result.gate_failures = find_gate_failures(run.result.mesh, gates, quiet);
 }
 
 void finish(Run& run, Outcome outcome) {
@@ -402,7 +421,7 @@ void work_in_the_plane(Run& run) {
 void work(Run& run) {
   check_floating_point_mode();
   if (run.kind == JobKind::sizes) check_size_outputs(run.options);
-  check_job(run.options);
+  check_job(run.options, run.extras);
   read_inputs(run);
   check_output_units(run.options);
   read_geometry(run);
@@ -438,7 +457,7 @@ void work_and_catch(Run& run) {
     work(run);
   } catch (const MeshingError& e) {
     put_error(result, e.exit_code, e.what(), e.places);
-    if (e.partial) run.partial = *e.partial;
+    result.partial = e.partial;
   } catch (const Error& e) {
     put_error(result, e.exit_code, e.what(), e.places);
   } catch (const std::bad_alloc&) {
@@ -477,7 +496,8 @@ void set_limits(const LimitOptions& limits, Context& context) {
 
 }  // namespace
 
-JobResult run_job(const Options& options, Context& context, const std::string& command, JobKind kind) {
+JobResult run_job(const Options& options, Context& context, const std::string& command, JobKind kind,
+                  const JobExtras& extras) {
   JobResult result;
   set_limits(options.limits, context);
   const auto outer_log = context.on_log;
@@ -490,7 +510,7 @@ JobResult run_job(const Options& options, Context& context, const std::string& c
     result.stage = progress.stage;
     if (outer_progress) outer_progress(progress);
   };
-  Run run{options, context, result, {}, {}, {}, {}, kind, {}, {}};
+  Run run{options, context, result, {}, {}, kind, {}, {}, extras};
   if (kind != JobKind::grid) prepare_survey(run);
   work_and_catch(run);
   context.on_log = outer_log;

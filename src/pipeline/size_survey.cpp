@@ -23,7 +23,8 @@ constexpr double kCellsPerPoint = 5.6, kTrianglesPerPoint = 2;
 // More than a filling with regular tetrahedra would have: where sizes vary cells are less regular, and cells that end
 // at the border are cut off ones. Fitted to grids of 7e4 to 4e6 cells (bodies, a ship, examples/sizes), all within 8 %.
 constexpr double kIrregular = 1.04, kPerBorderTriangle = 1.2, kPerBorderSegment = 0.8;
-constexpr double kSurelyOver = 3;  ///< estimates with few boxes are rough
+constexpr std::uint64_t kFacesPerCell = 4;  ///< no tetrahedron has more
+constexpr double kSurelyOver = 3;           ///< estimates with few boxes are rough
 constexpr std::size_t kFewLeaves = 20'000;
 constexpr double kBorderWidth = 1.5;  ///< sizes; boxes on the border are halved until they are narrower
 constexpr std::size_t kGrain = 1 << 6;
@@ -221,6 +222,28 @@ void refuse_too_many_cells(const PlanarPrepared& prepared, const SizeOptions& op
   const KeptDomain domain(prepared);
   refuse_over(limit, estimate_grid(domain, *prepared.size, growth_of(options), context, kFewLeaves), true, levels,
               context);
+}
+
+void refuse_too_many_triangles(const Model& look, const SizeField& size, int levels, Context& context) {
+  const std::uint64_t most = context.max_cells > 0 ? kFacesPerCell * context.max_cells : TetComplex::kMaxSlots;
+  const std::uint64_t limit = most >> (2 * levels);
+  std::vector<double> area;
+  std::vector<Point> at;
+  double all = 0;
+  for (const auto& [a, b, c] : look.triangles) {
+    const Point p = look.points[a], q = look.points[b], r = look.points[c];
+    area.push_back(0.5 * length(cross(q - p, r - p)));
+    all += area.back();
+    at.push_back((p + q + r) / 3);
+  }
+  const double least = size.lower_bound(look.bounding_box());
+  if (kCellsPerArea * all < least * least * static_cast<double>(limit)) return;
+  std::vector<double> h(at.size());
+  evaluate_sizes(size, at, h, context);
+  Estimate estimate;
+  estimate.least_size = *std::min_element(h.begin(), h.end());
+  for (std::size_t i = 0; i < h.size(); ++i) estimate.cells += kCellsPerArea * area[i] / (h[i] * h[i]);
+  refuse_over(limit, estimate, true, levels, context);
 }
 
 Mesh size_mesh(const KeptDomain& domain, const SizeField& size, double growth, Context& context) {

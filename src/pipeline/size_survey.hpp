@@ -4,6 +4,7 @@
 #include "delfront/context.hpp"
 #include "delfront/job.hpp"
 #include "delfront/mesh.hpp"
+#include "delfront/model.hpp"
 #include "delfront/size_field.hpp"
 #include "pipeline/kept_domain.hpp"
 #include "pipeline/prepare.hpp"
@@ -34,6 +35,10 @@ void refine_estimate(Estimate& estimate, bool is_planar, int levels);
 void refuse_too_many_cells(const Prepared& prepared, const SizeOptions& options, int levels, Context& context);
 /// In the plane, where there is a limit of cells, and the boundary is as fine as the sizes.
 void refuse_too_many_cells(const PlanarPrepared& prepared, const SizeOptions& options, int levels, Context& context);
+
+/// @brief The same for the triangles of a smooth surface, from a first grid of it.
+/// @param levels  halvings of every edge that come later
+void refuse_too_many_triangles(const Model& look, const SizeField& size, int levels, Context& context);
 
 /// @return the growth that the size field of a job keeps
 double growth_of(const SizeOptions& options);

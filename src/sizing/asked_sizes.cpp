@@ -29,7 +29,8 @@ double growth_asked(const SizeOptions& options) {
 double growth_of_boundary(const SizeOptions& options) { return steeper_growth(growth_asked(options), options.steeper); }
 
 bool has_field_everywhere(const SizeOptions& options) {
-  return !options.expression.delta.empty() || !options.background.file.empty() || !options.solution.file.empty();
+  return !options.expression.delta.empty() || !options.background.file.empty() || !options.solution.file.empty() ||
+         !options.fields.empty();
 }
 
 std::unique_ptr<SizeField> build_asked_size_field(BoundarySizes boundary, const SizeOptions& options, double largest,

@@ -26,7 +26,8 @@ double steeper_growth(double growth, double times);
 /// @return the largest size of any boundary point, 0 without points
 double largest_size(const BoundarySizes& boundary);
 
-/// @brief Whether the options ask for sizes by a way that has an opinion everywhere: a formula, a grid, a solution.
+/// @brief Whether the options ask for sizes by a way that has an opinion everywhere: a formula, a grid, a solution, a
+/// field of the program that calls.
 bool has_field_everywhere(const SizeOptions& options);
 
 /// @brief Sizes from the boundary (S1), as the options ask for them.

@@ -123,8 +123,12 @@ SimplexSet named_part(const Model& model, const std::string& name) {
     set.points.push_back(model.points[model.corners[i]]);
   }
   if (is_known) return set;
-  for (const Region& region : model.regions) {
-    if (region.name != name) continue;
+  for (std::size_t r = 0; r < model.regions.size(); ++r) {
+    if (model.regions[RegionId(r)].name != name) continue;
+    for (std::size_t t = 0; t < model.sides.size(); ++t)
+      if (const auto& [behind, ahead] = model.sides[TriangleId(t)]; behind == RegionId(r) || ahead == RegionId(r))
+        add(t);
+    if (!set.triangles.empty()) return set;
     if (model.regions.size() > 1)
       throw UsageError(
           fmt::format("distance to '{}': of several regions the distance is not known before gridding; "

@@ -22,9 +22,8 @@ constexpr std::size_t kGrain = 1 << 6;
 constexpr std::size_t kMostBoxes = 1'000'000;
 constexpr double kTighter = 1 - 1e-6;
 
-/// The least size at the places of a regular pattern in the box, its corners among them.
-double sampled_least(const SizeField& size, const Box& box, int dimension) {
-  std::vector<Point> at;
+/// The places of a regular pattern in the box, its corners among them.
+void add_samples(const Box& box, int dimension, std::vector<Point>& at) {
   const int nz = dimension == 3 ? kSamples : 1;
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < kSamples; ++j)
@@ -33,9 +32,20 @@ double sampled_least(const SizeField& size, const Box& box, int dimension) {
         const Point side = box.high - box.low;
         at.push_back(box.low + Point{t.x * side.x, t.y * side.y, t.z * side.z});
       }
-  std::vector<double> sizes(at.size());
+}
+
+/// The least size in each box by such places; all are asked for at once.
+std::vector<double> sampled_least(const SizeField& size, const std::vector<Box>& boxes, int dimension) {
+  std::vector<Point> at;
+  for (const Box& box : boxes) add_samples(box, dimension, at);
+  std::vector<double> sizes(at.size()), least(boxes.size());
   size.sizes(at, sizes);
-  return *std::min_element(sizes.begin(), sizes.end());
+  const std::size_t n = boxes.empty() ? 0 : at.size() / boxes.size();
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const auto first = sizes.begin() + static_cast<std::ptrdiff_t>(n * i);
+    least[i] = *std::min_element(first, first + static_cast<std::ptrdiff_t>(n));
+  }
+  return least;
 }
 
 /// Where a box beyond the domain is asked for, the field is still right; only growth is not seen to there.
@@ -56,10 +66,12 @@ BoundarySizes steep_places(const SizeField& size, const Box& domain, double slop
   cones.points.resize(steep.size());
   cones.size.resize(steep.size());
   parallel_ranges(context.threads, steep.size(), kGrain, [&](std::size_t first, std::size_t last) {
+    std::vector<Box> boxes;
+    for (std::size_t i = first; i < last; ++i) boxes.push_back(octree.box(*steep[i]));
+    const std::vector<double> least = sampled_least(size, boxes, octree.dimension());
     for (std::size_t i = first; i < last; ++i) {
-      const Box box = octree.box(*steep[i]);
-      cones.points[i] = box.centre();
-      cones.size[i] = sampled_least(size, box, octree.dimension());
+      cones.points[i] = boxes[i - first].centre();
+      cones.size[i] = least[i - first];
     }
   });
   std::size_t kept = 0;

@@ -25,6 +25,8 @@ class Assembler {
                   std::uint32_t number) {
     Model& m = result_.model;
     const std::size_t first = m.points.size();
+    const bool is_sided = !region.triangles.empty() && region.triangles[0] < parts_.model.sides.size();
+    if (is_sided) m.sides.resize(m.triangles.size());
     for (std::size_t i = grid.num_border; i < grid.points.size(); ++i) m.points.push_back(grid.points[i]);
     const auto to_model = [&](std::uint32_t p) {
       return p < grid.num_border ? VertexId(border.point[p]) : VertexId(first + p - grid.num_border);
@@ -33,6 +35,7 @@ class Assembler {
       m.input_face.push_back(static_cast<std::uint32_t>(m.triangles.size()));
       m.triangles.push_back({to_model(a), to_model(b), to_model(c)});
       m.patch_of_triangle.push_back(region.patch);
+      if (is_sided) m.sides.push_back(parts_.model.sides[TriangleId(std::size_t(region.triangles[0]))]);
       result_.region_of_triangle.push_back(number);
     }
   }

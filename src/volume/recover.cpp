@@ -312,8 +312,9 @@ void try_boundary(const Model& model, const std::array<double, 3>& factor, std::
   if (!is_plain) undo_stretch(grid.complex, model, segments, factor);
   const auto facts = colour_regions(grid.complex, subfaces, model, is_far_field, context);
   const std::vector<bool> keep = choose_regions(grid.complex, facts, domain);
-  grid.num_regions = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), true));
-  strip_outside(grid.complex, keep);
+  const std::vector<std::uint32_t> order = order_regions(facts, keep);
+  grid.regions = name_regions(facts, order, model);
+  strip_outside(grid.complex, order);
   keep_curve_edges(grid.complex, segments);
   unsplit_boundary(grid.complex, segments, report, context);
   const EdgeSet& kept = grid.complex.kept_edges;  // constrained faces hold all other edges that matter

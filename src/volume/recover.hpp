@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -26,7 +27,7 @@ struct BoundaryGrid {
   TetComplex complex;
   std::vector<SplitTriangle> split;
   std::vector<std::vector<CurvePiece>> curve_pieces;  ///< by curve of the model; none for what lies outside
-  std::size_t num_regions = 0;
+  std::vector<std::string> regions;                   ///< names, by colour
 };
 
 /// @brief How long recovery goes on. Each round starts over, with a point more on every edge that resisted.

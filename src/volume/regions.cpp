@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 namespace delfront {
@@ -118,6 +119,7 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
   std::vector<RegionFacts> facts(flood(complex));
   const SubfaceMap map(subfaces);
   std::map<Border, std::size_t> borders;
+  std::vector<std::map<RegionId, std::size_t>> votes(model.sides.empty() ? 0 : facts.size());
   for (TetIndex t = 0; t < complex.num_slots(); ++t) {
     if (complex.is_dead(t)) continue;
     const std::uint32_t colour = complex.region[t];
@@ -131,9 +133,19 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
       if (is_front) ++borders[{colour, other}];
       if (colour != TetComplex::kOutside && is_far_field[model.patch_of_triangle[subface.triangle].index()])
         facts[colour].touches_far_field = true;
+      if (colour != TetComplex::kOutside && subface.triangle.index() < model.sides.size())
+        if (const RegionId region = model.sides[subface.triangle][is_front ? 1 : 0]; region.is_valid())
+          ++votes[colour][region];
     }
   }
   decide_holes(facts, borders);
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    const auto most = std::max_element(votes[i].begin(), votes[i].end(),
+                                       [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most == votes[i].end()) continue;
+    facts[i].declared = most->first;
+    facts[i].is_hole = facts[i].is_undecided = false;
+  }
   for (std::size_t i = 0; i < facts.size(); ++i)
     if (facts[i].is_undecided)
       context.log(
@@ -189,11 +201,51 @@ std::vector<bool> choose_regions(const TetComplex& complex, const std::vector<Re
   return keep;
 }
 
-void strip_outside(TetComplex& c, const std::vector<bool>& keep) {
-  std::vector<std::uint32_t> new_colour(keep.size(), TetComplex::kOutside);
-  std::uint32_t colours = 0;
+std::vector<std::uint32_t> order_regions(const std::vector<RegionFacts>& facts, const std::vector<bool>& keep) {
+  std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < keep.size(); ++i)
-    if (keep[i]) new_colour[i] = colours++;
+    if (keep[i]) kept.push_back(i);
+  std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
+    return facts[a].declared.value < facts[b].declared.value;  // none is the last
+  });
+  std::vector<std::uint32_t> order(keep.size(), TetComplex::kOutside);
+  for (std::size_t i = 0; i < kept.size(); ++i) order[kept[i]] = static_cast<std::uint32_t>(i);
+  return order;
+}
+
+std::vector<std::string> name_regions(const std::vector<RegionFacts>& facts, const std::vector<std::uint32_t>& order,
+                                      const Model& model) {
+  std::vector<std::size_t> by_number(facts.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    if (order[i] != TetComplex::kOutside) by_number[order[i]] = i, ++count;
+  std::set<std::string> taken;
+  for (const Region& region : model.regions) taken.insert(region.name);
+  std::vector<bool> is_given(model.regions.size(), false);
+  const auto unused = [&](const std::string& wanted, std::size_t number) {
+    std::string name = wanted;
+    while (!taken.insert(name).second) name = fmt::format("{}_{}", wanted, number++);
+    return name;
+  };
+  std::vector<std::string> names;
+  bool has_fluid = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const RegionId declared = facts[by_number[i]].declared;
+    const std::string given = declared.index() < model.regions.size() ? model.regions[declared].name : std::string();
+    if (given.empty()) {
+      names.push_back(has_fluid ? unused(fmt::format("region_{}", i + 1), 2) : unused("fluid", 2));
+      has_fluid = true;
+    } else if (!is_given[declared.index()]) {
+      is_given[declared.index()] = true;
+      names.push_back(given);
+    } else {
+      names.push_back(unused(given, 2));
+    }
+  }
+  return names;
+}
+
+void strip_outside(TetComplex& c, const std::vector<std::uint32_t>& new_colour) {
   const auto slots = static_cast<TetIndex>(c.num_slots());
   auto is_kept = [&](TetIndex t) { return c.region[t] != TetComplex::kOutside; };
   std::vector<FaceRef> border;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <string>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -22,6 +23,7 @@ struct RegionFacts {
   bool is_hole = false;       ///< its shell's orientation opposes its parent's
   bool is_undecided = false;  ///< flips made that undecidable: taken as a region
   bool touches_far_field = false;
+  RegionId declared;  ///< which of the model's regions most of its faces say that it is; invalid: none says so
 };
 
 /// @brief Colour the tets by bounded component (0, 1, …; kOutside for what is not enclosed), by flood fill.
@@ -35,8 +37,16 @@ std::vector<RegionFacts> colour_regions(TetComplex& complex, const std::vector<S
 std::vector<bool> choose_regions(const TetComplex& complex, const std::vector<RegionFacts>& facts,
                                  const DomainOptions& domain);
 
-/// @brief Remove the tets that are not kept: ghosts stand on the border of the rest, colours are numbered anew in
-/// order.
-void strip_outside(TetComplex& complex, const std::vector<bool>& keep);
+/// @brief The order of what is kept: the model's regions in its order, then the others in that of their colours.
+/// @return new colours; kOutside for what is not kept
+std::vector<std::uint32_t> order_regions(const std::vector<RegionFacts>& facts, const std::vector<bool>& keep);
+
+/// @brief Names in that order: as the model has them, parts of one numbered; the first without a name is "fluid",
+/// others are "region_" and their number.
+std::vector<std::string> name_regions(const std::vector<RegionFacts>& facts, const std::vector<std::uint32_t>& order,
+                                      const Model& model);
+
+/// @brief Remove the tets whose new colour is kOutside: ghosts stand on the border of the rest.
+void strip_outside(TetComplex& complex, const std::vector<std::uint32_t>& new_colour);
 
 }  // namespace delfront

@@ -94,11 +94,7 @@ class Conversion {
   };
 
   void add_groups() {
-    for (std::size_t i = 0; i < grid_.num_regions; ++i) {
-      const bool is_named = i < model_.regions.size() && !model_.regions[RegionId(i)].name.empty();
-      const std::string by_number = i == 0 ? "fluid" : fmt::format("region_{}", i + 1);
-      region_group_.push_back(mesh_.add_group(3, is_named ? model_.regions[RegionId(i)].name : by_number));
-    }
+    for (const std::string& name : grid_.regions) region_group_.push_back(mesh_.add_group(3, name));
     patch_group_.resize(model_.patches.size());
   }
 

@@ -3,10 +3,16 @@
 """CAD files on the command line: a part becomes a grid, with its unit and names; without the module it is said what to do."""
 import json
 import os
+import re
 import sys
 import unittest
+from pathlib import Path
 
 import case
+import step_boxes
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
+import damage_cad  # noqa: E402
 
 
 class CadFiles(case.Case):
@@ -72,6 +78,39 @@ class CadFiles(case.Case):
             self.write(name, content)
             self.expect(3, "mesh", name, "-o", "part.su2", says=[name, says])
         self.expect(3, "mesh", "nowhere.step", "-o", "part.su2", says="no such file")
+
+    def test_an_assembly_has_its_parts_as_regions(self):
+        self.needs_module()
+        parts = [("shaft", [(0, 0, 0)]), ("nut", [(1, 0, 0), (2, 0, 0)]), ("box (2) of", [(0, 1, 0)])]
+        step_boxes.write_assembly(self.folder / "parts.step", parts)
+        for hmax in ("0.5", "0.23"):
+            self.expect(0, "mesh", "parts.step", "-o", "parts.vtu", "-o", "parts.msh", "--hmax", hmax, "--report", "r.json")
+            regions = self.report("r.json")["regions"]
+            self.assertEqual([group["name"] for group in regions], ["shaft", "nut", "nut_2", "box (2) of"])
+            self.expect(0, "check", "parts.vtu")
+            names = re.findall(r'^3 \d+ "(.*)"$', (self.folder / "parts.msh").read_bytes().decode("latin-1"), re.M)
+            self.assertEqual(names, [group["name"] for group in regions])
+        self.expect(0, "info", "parts.step", says=["4 solids", "imprinted", "nut"])
+
+    def test_damaged_copies_are_read_or_refused_by_name(self):
+        self.needs_module()
+        source = self.folder / "whole.step"
+        step_boxes.write_assembly(source, [("left", [(0, 0, 0)]), ("right", [(1, 0, 0)])])
+        for k in range(40):
+            self.write("damaged.step", damage_cad.damaged(source.read_bytes(), k))
+            result = self.run_delfront("info", "damaged.step", "-q")
+            self.assertIn(result.returncode, (0, 3, 6), (k, result.stderr))
+            self.assertTrue(result.returncode == 0 or "damaged.step" in result.stderr, (k, result.stderr))
+
+    def test_info_of_an_open_sheet_is_quick_and_says_where(self):
+        self.needs_module()
+        path = self.shared("cad/tigl_nacelle.stp")
+        result = self.run_delfront("info", path, "--json", "sheet.json")
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("is an open sheet with 4 free edges", case.unbroken(result.stderr))
+        cad = json.loads((self.folder / "sheet.json").read_text())["geometry"]["cad"]
+        self.assertEqual(len(cad["open_at"]), 4)
+        self.assertEqual(cad["coordinates"], "in mm, as the file says")
 
 
 if __name__ == "__main__":

@@ -57,10 +57,28 @@ class SmoothGeometry(case.Case):
         self.assertEqual(geometry["faces"][6]["kind"], "wall")
         self.assertIn("closed", result.stdout)
 
-    def test_more_than_any_memory_holds_is_a_limit(self):
-        self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
-        self.expect(6, "mesh", "room.geom.toml", "-o", "room.vtu", "--hmax", "1e-300", says="out of memory")
-        self.assertEqual(self.files(), ["room.geom.toml"])
+    def test_more_than_a_grid_can_hold_is_a_limit(self):
+        self.write("ball.geom.toml", '[[shape]]\ntype = "sphere"\nradius = 1\n')
+        for size in ("1e-5", "1e-9", "1e-300"):
+            self.expect(6, "mesh", "ball.geom.toml", "-o", "ball.vtu", "--hmax", size, says="stopped before gridding")
+        self.expect(6, "mesh", "ball.geom.toml", "-o", "ball.vtu", "--hmax", "0.01", "--max-cells", "1e4",
+                    says=["stopped before gridding", "--max-cells"])
+        for limit, says in (("--time-limit", "1"), "time limit"), (("--memory-limit", "150MB"), "memory limit"):
+            self.expect(6, "mesh", "ball.geom.toml", "-o", "ball.vtu", "--hmax", "1e-3", *limit, says=says)
+        self.assertEqual(self.files(), ["ball.geom.toml"])
+
+    def test_a_boundary_whose_faces_later_ones_take_is_said(self):
+        self.write("room.geom.toml", '[[shape]]\ntype = "box"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')
+        self.write("job.toml", '[input]\nfiles = ["room.geom.toml"]\n[boundaries.first]\nselect = { id = [1, 2] }\n'
+                   '[boundaries.later]\nselect = { id = [2, 1, 3] }\n[output]\nfiles = ["room.vtu"]\n')
+        self.expect(2, "mesh", "job.toml", says=["job.toml:", "boundaries.first", "come later", "later"])
+
+    def test_shapes_that_cross_are_named(self):
+        for x in ("0.8", "0"):  # the second: the same twice
+            self.write("balls.geom.toml", '[[shape]]\ntype = "sphere"\nname = "left"\nradius = 1\n'
+                       f'[[shape]]\ntype = "sphere"\nname = "right"\nradius = 1\norigin = [{x}, 0, 0]\n')
+            self.expect(3, "mesh", "balls.geom.toml", "-o", "balls.vtu", says=["left", "right", "cross or touch"])
+            self.assertEqual(self.files(), ["balls.geom.toml", "balls_defects.vtp"])
 
     def test_faces_are_selected_by_number_and_normal(self):
         self.write("room.geom.toml", '[[shape]]\ntype = "box"\nname = "room"\nmin = [0, 0, 0]\nmax = [1, 2, 3]\n')

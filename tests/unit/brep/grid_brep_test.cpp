@@ -156,6 +156,10 @@ TEST(GridBrep, AFaceFarFromOneThatFailsKeepsItsGridWhileThatIsDoneAgain) {
   EXPECT_LT(farthest_from_entity(both, joined(ball, square)), 1e-12);
 }
 
+TEST(GridBrep, SidesOfOneEdgeHaveALimit) {
+  EXPECT_THROW(grid(make_cylinder({}, 1, 2), LinearSize(1e-10, 1, {}, 0, 1)), LimitError);
+}
+
 TEST(GridBrep, NoMoreRoundsThanAskedFor) {
   const Brep ball = make_rectangle_on(make_sphere_surface({}, 1), {{0, -0.5}, {1.5, 0.5}});
   const LinearSize size(0.35, 1, {}, 0, 1);

@@ -9,6 +9,7 @@
 
 #include "delfront/brep_shapes.hpp"
 #include "delfront/surface_check.hpp"
+#include "pipeline/boundaries.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "unit/brep_sizes/geometry_texts.hpp"
 
@@ -31,9 +32,9 @@ Made grid(const std::string& text, const Options& options = {}, int threads = 1)
   Made made;
   made.brep = brep_of(text);
   made.look = look_at_brep(made.brep, context);
-  GeometryInput input{0, made.brep, made.look};
-  made.mesh = grid_geometry_to_goals(input, geometry_sizes(made.brep, made.look, options, nullptr, context), options,
-                                     context, made.rounds);
+  GeometryInput input{0, {}, made.brep, made.look};
+  const auto sizes = geometry_sizes(made.brep, made.look, options, nullptr, context);
+  made.mesh = surface_mesh(grid_geometry_to_goals(input, sizes, options, context, made.rounds));
   return made;
 }
 

@@ -4,14 +4,17 @@
 
 #include <BOPAlgo_Builder.hxx>
 #include <BRepAdaptor_Surface.hxx>
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_Copy.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepGProp.hxx>
+#include <BRepOffsetAPI_ThruSections.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -23,6 +26,7 @@
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
+#include <GeomAPI_Interpolate.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
 #include <GeomAPI_ProjectPointOnSurf.hxx>
 #include <Geom_BSplineCurve.hxx>
@@ -38,18 +42,24 @@
 #include <STEPControl_Writer.hxx>
 #include <ShapeAnalysis_Surface.hxx>
 #include <TColgp_Array1OfPnt.hxx>
+#include <TColgp_HArray1OfPnt.hxx>
+#include <TCollection_ExtendedString.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Face.hxx>
+#include <TopoDS_Wire.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <fstream>
+#include <gp_Ax1.hxx>
 #include <gp_Ax2.hxx>
+#include <gp_Trsf.hxx>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 
@@ -112,6 +122,29 @@ void write_coloured_box(const std::string& name, const std::vector<Colour>& colo
   XCAFApp_Application::GetApplication()->Close(document);
 }
 
+void write_assembly(const std::vector<Product>& products, const std::string& path) {
+  be_silent();
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const TDF_Label whole = shapes->NewShape();
+  TDataStd_Name::Set(whole, "whole");
+  for (const Product& product : products) {
+    const TDF_Label label = shapes->AddShape(product.solid, false);
+    TDataStd_Name::Set(label, TCollection_ExtendedString(product.name.c_str(), true));
+    for (const Point& at : product.at) {
+      gp_Trsf move;
+      move.SetTranslation(gp_Vec(at.x, at.y, at.z));
+      shapes->AddComponent(whole, label, TopLoc_Location(move));
+    }
+  }
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  writer.Transfer(document, STEPControl_AsIs);
+  require(writer.Write(path.c_str()) == IFSelect_RetDone, path);
+  XCAFApp_Application::GetApplication()->Close(document);
+}
+
 TopoDS_Shape box(double x, double y, double z, Point at) {
   return BRepPrimAPI_MakeBox(gp_Pnt(at.x, at.y, at.z), x, y, z).Shape();
 }
@@ -134,6 +167,61 @@ TopoDS_Shape two_boxes(bool is_fused) {
   builder.AddArgument(b);
   builder.Perform();
   return builder.Shape();
+}
+
+TopoDS_Shape lattice(std::size_t a_side, double turn) {
+  std::vector<TopoDS_Shape> boxes;
+  for (std::size_t i = 0; i < a_side * a_side * a_side; ++i)
+    boxes.push_back(box(1, 1, 1, {double(i % a_side), double(i / a_side % a_side), double(i / a_side / a_side)}));
+  gp_Trsf place;
+  place.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(1, 2, 3)), turn);
+  return compound_of(boxes).Moved(TopLoc_Location(place));
+}
+
+TopoDS_Shape pin_in_a_block(double turn) {
+  const gp_Ax2 axis(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1));
+  const TopoDS_Shape pin = BRepPrimAPI_MakeCylinder(axis, 0.5, 1).Shape();
+  const TopoDS_Shape block = BRepAlgoAPI_Cut(box(2, 2, 1, {-1, -1, 0}), pin).Shape();
+  gp_Trsf turned;
+  turned.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), turn);
+  return compound_of({block, BRepBuilderAPI_Transform(pin, turned, true).Shape()});
+}
+
+namespace {
+
+/// An aerofoil of a kind, closed, square to the x axis, turned about it.
+TopoDS_Wire section(double x, double chord, double thickness, double pitch) {
+  constexpr int kPoints = 16;
+  const Handle(TColgp_HArray1OfPnt) points = new TColgp_HArray1OfPnt(1, kPoints);
+  for (int i = 0; i < kPoints; ++i) {
+    const double w = 2 * std::numbers::pi * i / kPoints;
+    const double along = 0.5 * chord * std::cos(w), across = 0.5 * thickness * std::sin(w) * (1 + 0.3 * std::cos(w));
+    points->SetValue(i + 1, gp_Pnt(x, along * std::cos(pitch) - across * std::sin(pitch),
+                                   along * std::sin(pitch) + across * std::cos(pitch)));
+  }
+  GeomAPI_Interpolate spline(points, true, 1e-9);
+  spline.Perform();
+  return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(spline.Curve()).Edge()).Wire();
+}
+
+}  // namespace
+
+TopoDS_Shape propeller(int blades) {
+  BRepOffsetAPI_ThruSections loft(true, false, 1e-6);
+  loft.CheckCompatibility(false);  // which would cut closed sections in pieces that wave
+  for (int i = 0; i <= 5; ++i) {
+    const double s = i / 5.0;
+    loft.AddWire(section(0.15 + 0.85 * s, 0.35 * (1 - 0.5 * s * s), 0.06 * (1 - 0.6 * s), 1.1 - 0.8 * s));
+  }
+  loft.Build();
+  std::vector<TopoDS_Shape> parts = {
+      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, -0.5), gp_Dir(0, 0, 1)), 0.3, 1).Shape()};
+  for (int k = 0; k < blades; ++k) {
+    gp_Trsf turned;
+    turned.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 2 * std::numbers::pi * k / blades);
+    parts.push_back(BRepBuilderAPI_Transform(loft.Shape(), turned, true).Shape());
+  }
+  return compound_of(parts);
 }
 
 TopoDS_Shape open_box() {

@@ -24,6 +24,14 @@ void write_coloured_box(const std::string& name, const std::vector<Colour>& colo
 /// @brief These shapes side by side, nothing joined.
 TopoDS_Compound compound_of(const std::vector<TopoDS_Shape>& shapes);
 
+/// @brief A product of an assembly: a solid with a name, at places (by steps along x).
+struct Product {
+  std::string name;
+  TopoDS_Shape solid;
+  std::vector<Point> at;  ///< one instance each
+};
+void write_assembly(const std::vector<Product>& products, const std::string& path);
+
 TopoDS_Shape box(double x, double y, double z, Point at = {});
 TopoDS_Shape cylinder(double radius, double height);
 TopoDS_Shape sphere(double radius);
@@ -33,6 +41,12 @@ TopoDS_Shape torus(double radius, double tube);
 TopoDS_Shape tee();
 /// @brief Two boxes with a common face, as one compound; fused: the face is one of both already.
 TopoDS_Shape two_boxes(bool is_fused);
+/// @brief Boxes of 1 in a lattice, each a solid of its own, the whole turned about an odd axis.
+TopoDS_Shape lattice(std::size_t a_side, double turn);
+/// @brief A block with a bore, and a pin in it whose seam is turned by an angle.
+TopoDS_Shape pin_in_a_block(double turn);
+/// @brief A hub and blades by lofts through twisted sections, whose roots lie in the hub; each a solid of its own.
+TopoDS_Shape propeller(int blades);
 /// @brief A box without its top.
 TopoDS_Shape open_box();
 /// @brief The faces of a box, each with edges of its own.

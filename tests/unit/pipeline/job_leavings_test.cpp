@@ -27,11 +27,11 @@ class JobLeavings : public testing::Test {
   fs::path folder_;
   Context context_;
   JobResult result_;
-  delfront::Run run_{{}, context_, result_, {}, {}, {}, {}};
+  delfront::Run run_{{}, context_, result_, {}, {}, {}, {}, {}};
 };
 
 TEST_F(JobLeavings, a_failed_gridding_leaves_what_there_is_beside_the_asked_name) {
-  run_.partial = fixtures::cube_surface();
+  result_.partial = std::make_shared<Mesh>(fixtures::cube_surface());
   result_.exit_code = ExitCode::meshing_failed;
   leave_partial_grid(run_);
   EXPECT_EQ(result_.partial_file, path("grid_partial.vtu"));
@@ -42,7 +42,7 @@ TEST_F(JobLeavings, a_failed_gridding_leaves_what_there_is_beside_the_asked_name
 TEST_F(JobLeavings, no_partial_grid_without_cells_or_after_other_ends) {
   result_.exit_code = ExitCode::meshing_failed;
   leave_partial_grid(run_);
-  run_.partial = fixtures::cube_surface();
+  result_.partial = std::make_shared<Mesh>(fixtures::cube_surface());
   result_.exit_code = ExitCode::bad_input;
   leave_partial_grid(run_);
   EXPECT_TRUE(result_.partial_file.empty());
@@ -52,7 +52,7 @@ TEST_F(JobLeavings, no_partial_grid_without_cells_or_after_other_ends) {
 TEST_F(JobLeavings, a_partial_grid_never_destroys_an_input) {
   run_.options.input.files = {path("grid_partial.vtu")};
   std::ofstream(path("grid_partial.vtu")) << "precious";
-  run_.partial = fixtures::cube_surface();
+  result_.partial = std::make_shared<Mesh>(fixtures::cube_surface());
   result_.exit_code = ExitCode::meshing_failed;
   leave_partial_grid(run_);
   EXPECT_TRUE(result_.partial_file.empty());
@@ -80,7 +80,7 @@ TEST_F(JobLeavings, gate_failures_are_shown_in_the_units_of_the_grid) {
   run_.options.output.units = std::string("mm");
   Finding failure{"gate_min_dihedral", Severity::error, 1, "", "", {{{1, 2, 3}, {0}}}};
   failure.outlines = {{0, {{1, 0, 0}, {0, 1, 0}}}};
-  run_.gate_failures = {failure};
+  result_.gate_failures = {failure};
   result_.exit_code = ExitCode::gate_not_met;
   leave_defects(run_);
   ASSERT_EQ(result_.defects_file, path("grid_defects.vtp"));

@@ -57,7 +57,7 @@ double recover_seconds(int n) {
   const auto start = std::chrono::steady_clock::now();
   const BoundaryGrid grid =
       tetrahedralize_boundary(model, {}, std::vector<bool>(model.patches.size(), false), report, context);
-  EXPECT_EQ(grid.num_regions, static_cast<std::size_t>(n) + 1);
+  EXPECT_EQ(grid.regions.size(), static_cast<std::size_t>(n) + 1);
   EXPECT_EQ(report.steiner_left, 0u);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -65,7 +65,7 @@ double recover_seconds(int n) {
 TEST(Adversaries, many_tiny_components) {
   const int n = 1000, side = 10;
   const Recovered r = expect_recovered(scattered_tets(n), std::pow(side + 2, 3));
-  EXPECT_EQ(r.grid.num_regions, static_cast<std::size_t>(n) + 1);
+  EXPECT_EQ(r.grid.regions.size(), static_cast<std::size_t>(n) + 1);
   EXPECT_EQ(r.report.steiner_left, 0u);
 }
 
@@ -86,7 +86,7 @@ TEST(Adversaries, shells_in_shells) {
         shells.add(box_facets({-r, -r, -r}, {r, r, r}));
       }
       const double outer = 1 + (n - 1) * step;
-      EXPECT_EQ(expect_recovered(shells, 8 * outer * outer * outer).grid.num_regions, static_cast<std::size_t>(n));
+      EXPECT_EQ(expect_recovered(shells, 8 * outer * outer * outer).grid.regions.size(), static_cast<std::size_t>(n));
     }
 }
 
@@ -125,7 +125,7 @@ TEST(Adversaries, points_on_spheres) {
     const double hollow = volume - inner.volume();
     inner.turn();
     balls.add(inner);
-    EXPECT_EQ(expect_recovered(balls, hollow).grid.num_regions, 1u);
+    EXPECT_EQ(expect_recovered(balls, hollow).grid.regions.size(), 1u);
   }
 }
 
@@ -185,7 +185,7 @@ TEST(Adversaries, points_on_lattices_with_shared_faces) {
     DomainOptions all;
     all.keep = "all";
     const Recovered r = expect_recovered(lattice, n * n * n, all);
-    EXPECT_EQ(r.grid.num_regions, static_cast<std::size_t>(n * n * n));
+    EXPECT_EQ(r.grid.regions.size(), static_cast<std::size_t>(n * n * n));
     EXPECT_EQ(r.report.steiner_left, 0u);
   }
 }

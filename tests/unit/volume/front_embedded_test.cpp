@@ -200,7 +200,7 @@ TEST(FrontEmbedded, several_regions) {
     body.corners.push_back(body.add_point({x, 0.7, 0.7}));
   }
   const Filled r = expect_embedded(body, UniformSize(0.3));
-  EXPECT_EQ(r.grid.num_regions, 2u);
+  EXPECT_EQ(r.grid.regions.size(), 2u);
   EXPECT_EQ(r.recovery.curve_edges, 4u);
 }
 

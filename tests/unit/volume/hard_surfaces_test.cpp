@@ -37,7 +37,7 @@ TEST(HardSurfaces, chazelle_polyhedra) {
       const Facets body = fixtures::chazelle(n, gap);
       const Recovered r = expect_recovered(body, body.volume());
       EXPECT_EQ(r.report.steiner_left, 0u);
-      EXPECT_EQ(r.grid.num_regions, 1u);
+      EXPECT_EQ(r.grid.regions.size(), 1u);
     }
 }
 
@@ -48,7 +48,7 @@ void expect_needles(double width) {
   expect_recovered(spike, spike.volume());
   Facets inside = box_facets({-1, -1, -1}, {2, 2, 2});
   inside.add(spike);
-  EXPECT_EQ(expect_recovered(inside, 27).grid.num_regions, 2u);
+  EXPECT_EQ(expect_recovered(inside, 27).grid.regions.size(), 2u);
   Facets star = box_facets({-1, -1, -1}, {1, 1, 1});
   for (int i = 0; i < 8; ++i) {  // they nearly meet at the origin
     const double angle = 0.3 + 2 * std::numbers::pi * i / 8;
@@ -59,7 +59,7 @@ void expect_needles(double width) {
     if (needle.volume() < 0) needle.turn();
     star.add(needle);
   }
-  EXPECT_EQ(expect_recovered(star, 8).grid.num_regions, 9u);
+  EXPECT_EQ(expect_recovered(star, 8).grid.regions.size(), 9u);
 }
 
 TEST(HardSurfaces, needles) {
@@ -100,7 +100,7 @@ TEST(HardSurfaces, wedges_down_to_a_thousandth_of_a_degree) {
       expect_recovered(body, body.volume());
       Facets inside = box_facets({-1, -1, -1}, {2, 2, 2});
       inside.add(body);
-      EXPECT_EQ(expect_recovered(inside, 27).grid.num_regions, 2u);
+      EXPECT_EQ(expect_recovered(inside, 27).grid.regions.size(), 2u);
     }
 }
 
@@ -110,13 +110,13 @@ TEST(HardSurfaces, two_boxes_a_small_gap_apart) {
     Facets boxes = box_facets({-2, -2, -2}, {3, 3, 3});
     boxes.add(box_facets({0, 0, 0}, {1, 1, 0.5}));
     boxes.add(box_facets({0.1, 0.2, 0.5 + gap}, {1.1, 0.9, 1}));
-    EXPECT_EQ(expect_recovered(boxes, 125).grid.num_regions, 3u);
+    EXPECT_EQ(expect_recovered(boxes, 125).grid.regions.size(), 3u);
     Facets holes = box_facets({-2, -2, -2}, {3, 3, 3}), body = box_facets({0, 0, 0}, {1, 1, 0.5});
     body.add(box_facets({0, 0, 0.5 + gap}, {1, 1, 1}));
     const double volume = 125 - body.volume();
     body.turn();
     holes.add(body);
-    EXPECT_EQ(expect_recovered(holes, volume).grid.num_regions, 1u);
+    EXPECT_EQ(expect_recovered(holes, volume).grid.regions.size(), 1u);
   }
 }
 
@@ -153,10 +153,10 @@ TEST(HardSurfaces, a_field_of_twisted_prisms_in_a_box) {
     field.add(prism, {2.0 + 4 * (i % 3), 2.0 + 4 * (i / 3 % 3), 1.0 + 4.0 * (i / 9)});
   }
   const Recovered outside = expect_recovered(field, 12.0 * 12 * 12 - volume);
-  EXPECT_EQ(outside.grid.num_regions, 1u);
+  EXPECT_EQ(outside.grid.regions.size(), 1u);
   DomainOptions all;
   all.keep = "all";
-  EXPECT_EQ(expect_recovered(field, 12.0 * 12 * 12, all).grid.num_regions, 28u);
+  EXPECT_EQ(expect_recovered(field, 12.0 * 12 * 12, all).grid.regions.size(), 28u);
 }
 
 /// Prisms that stand on each other, twisted in turn: the bottom of one is the top of the other.
@@ -179,10 +179,10 @@ TEST(HardSurfaces, a_tower_of_twisted_prisms) {
     const std::size_t top = 3 * static_cast<std::size_t>(floors);
     tower.faces.push_back({top, top + 1, top + 2});
     const Recovered hollow = expect_recovered(tower, tower.volume());
-    EXPECT_EQ(hollow.grid.num_regions, 1u);
+    EXPECT_EQ(hollow.grid.regions.size(), 1u);
     for (std::size_t i = 1; i < static_cast<std::size_t>(floors); ++i)
       tower.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    EXPECT_EQ(expect_recovered(tower, hollow.volume).grid.num_regions, static_cast<std::size_t>(floors));
+    EXPECT_EQ(expect_recovered(tower, hollow.volume).grid.regions.size(), static_cast<std::size_t>(floors));
   }
 }
 

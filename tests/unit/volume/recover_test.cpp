@@ -31,7 +31,7 @@ std::size_t num_two_sided_faces(const Mesh& mesh) {
 
 TEST(RecoverBoundary, a_cube_and_one_tetrahedron) {
   const Recovered cube = expect_recovered(box_facets({0, 0, 0}, {1, 1, 1}), 1);
-  EXPECT_EQ(cube.grid.num_regions, 1u);
+  EXPECT_EQ(cube.grid.regions.size(), 1u);
   EXPECT_EQ(cube.report.steiner_points, 0u);
   EXPECT_EQ(cube.mesh.points.size(), 8u);
   const Recovered tet =
@@ -80,7 +80,7 @@ TEST(RecoverBoundary, an_inside_out_surface_is_gridded_all_the_same) {
   Facets box = box_facets({0, 0, 0}, {2, 1, 1});
   box.turn();
   const Recovered r = expect_recovered(box, 2);
-  EXPECT_EQ(r.grid.num_regions, 1u);
+  EXPECT_EQ(r.grid.regions.size(), 1u);
 }
 
 TEST(RecoverBoundary, two_cubes_with_a_common_face) {
@@ -89,7 +89,7 @@ TEST(RecoverBoundary, two_cubes_with_a_common_face) {
   other.faces.erase(other.faces.begin());
   cubes.add(other);
   const Recovered r = expect_recovered(cubes, 2);
-  EXPECT_EQ(r.grid.num_regions, 2u);
+  EXPECT_EQ(r.grid.regions.size(), 2u);
   EXPECT_EQ(num_two_sided_faces(r.mesh), 2u);
 }
 
@@ -98,7 +98,7 @@ TEST(RecoverBoundary, two_cubes_that_touch_in_an_edge_or_a_vertex) {
     Facets cubes = box_facets({0, 0, 0}, {1, 1, 1});
     cubes.add(box_facets({0, 0, 0}, {1, 1, 1}), shift);
     const Recovered r = expect_recovered(cubes, 2);
-    EXPECT_EQ(r.grid.num_regions, 2u);
+    EXPECT_EQ(r.grid.regions.size(), 2u);
     EXPECT_EQ(num_two_sided_faces(r.mesh), 0u);
     EXPECT_EQ(r.mesh.num_cells(CellType::triangle), 24u);
   }
@@ -116,7 +116,7 @@ Facets box_with_baffle() {
 
 TEST(RecoverBoundary, a_baffle_stays_two_sided_in_one_region) {
   const Recovered r = expect_recovered(box_with_baffle(), 2);
-  EXPECT_EQ(r.grid.num_regions, 1u);
+  EXPECT_EQ(r.grid.regions.size(), 1u);
   EXPECT_GE(num_two_sided_faces(r.mesh), 2u);
 }
 
@@ -124,7 +124,7 @@ TEST(RecoverBoundary, sheets_that_float_or_hang_on_one_edge) {
   Facets floating = box_facets({0, 0, 0}, {1, 1, 1});
   floating.add({{{0.3, 0.3, 0.4}, {0.7, 0.3, 0.5}, {0.5, 0.7, 0.6}}, {{0, 1, 2}}});
   const Recovered r = expect_recovered(floating, 1);
-  EXPECT_EQ(r.grid.num_regions, 1u);
+  EXPECT_EQ(r.grid.regions.size(), 1u);
   EXPECT_EQ(num_two_sided_faces(r.mesh), r.grid.split.empty() ? 1u : num_two_sided_faces(r.mesh));
   Facets many = box_facets({0, 0, 0}, {1, 1, 1});
   for (int i = 1; i < 10; ++i)  // a stack of parallel sheets
@@ -139,7 +139,7 @@ TEST(RecoverBoundary, nested_shells_of_one_sense_are_regions) {
   Facets shells;
   for (int i = 20; i > 0; --i) shells.add(box_facets({-1, -1, -1}, {1, 1, 1}), {}, i);
   const Recovered r = expect_recovered(shells, 8.0 * 20 * 20 * 20);
-  EXPECT_EQ(r.grid.num_regions, 20u);
+  EXPECT_EQ(r.grid.regions.size(), 20u);
   EXPECT_EQ(num_two_sided_faces(r.mesh), 12u * 19);
 }
 
@@ -153,11 +153,11 @@ TEST(RecoverBoundary, nested_shells_of_alternating_sense_are_holes_in_turn) {
     volume += (i % 2 ? -8.0 : 8.0) * i * i * i;
   }
   const Recovered r = expect_recovered(shells, volume);
-  EXPECT_EQ(r.grid.num_regions, 10u);
+  EXPECT_EQ(r.grid.regions.size(), 10u);
   EXPECT_EQ(num_two_sided_faces(r.mesh), 0u);
   DomainOptions all;
   all.keep = "all";
-  EXPECT_EQ(expect_recovered(shells, 8.0 * 20 * 20 * 20, all).grid.num_regions, 20u);
+  EXPECT_EQ(expect_recovered(shells, 8.0 * 20 * 20 * 20, all).grid.regions.size(), 20u);
 }
 
 TEST(RecoverBoundary, domain_keep_chooses_regions) {
@@ -165,10 +165,10 @@ TEST(RecoverBoundary, domain_keep_chooses_regions) {
   bodies.add(box_facets({2, 0, 0}, {4, 2, 2}));
   DomainOptions domain;
   domain.keep = "largest";
-  EXPECT_EQ(expect_recovered(bodies, 8, domain).grid.num_regions, 1u);
+  EXPECT_EQ(expect_recovered(bodies, 8, domain).grid.regions.size(), 1u);
   domain.keep = "";
   domain.keep_points = {{0.5, 0.25, 0.125}};
-  EXPECT_EQ(expect_recovered(bodies, 1, domain).grid.num_regions, 1u);
+  EXPECT_EQ(expect_recovered(bodies, 1, domain).grid.regions.size(), 1u);
   domain.keep_points = {{10, 0, 0}};
   RecoveryReport report;
   Context context;
@@ -202,10 +202,10 @@ Facets small_tets(int n, double box, unsigned seed, bool are_holes, double& volu
 TEST(RecoverBoundary, five_hundred_tets_scattered_in_a_box) {
   double volume = 0;
   Recovered r = expect_recovered(small_tets(500, 10, 1, false, volume), 1000);
-  EXPECT_EQ(r.grid.num_regions, 501u);
+  EXPECT_EQ(r.grid.regions.size(), 501u);
   const Facets holes = small_tets(500, 10, 2, true, volume);
   r = expect_recovered(holes, 1000 - volume);
-  EXPECT_EQ(r.grid.num_regions, 1u);
+  EXPECT_EQ(r.grid.regions.size(), 1u);
 }
 
 TEST(RecoverBoundary, the_same_in_two_runs_and_after_scaling_by_powers_of_two) {

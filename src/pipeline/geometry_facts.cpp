@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geometry_facts.hpp"
+#include "pipeline/geometry_facts.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
-namespace delfront::cli {
+namespace delfront {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShown = 40;       ///< entities of a kind on the terminal
+constexpr std::size_t kShownOpen = 8;    ///< free edges
 constexpr std::size_t kShownOfKind = 3;  ///< repairs and suspicious things of a kind
 
 double length_of(const BrepEdge& edge) {
@@ -47,31 +49,40 @@ Json cad_json(const CadReport& cad) {
           {"solids", cad.solids},
           {"shells", cad.shells},
           {"free_edges", cad.free_edges},
+          {"open_at", notes_json(cad.open_at)},
           {"internal_edges", cad.internal_edges},
           {"largest_tolerance", cad.largest_tolerance},
           {"repairs", notes_json(cad.repairs)},
           {"suspicious", notes_json(cad.suspicious)}};
 }
 
-void print_notes(const char* word, const std::vector<CadNote>& notes) {
+std::string notes_text(const char* word, const std::vector<CadNote>& notes) {
+  std::string text;
   std::map<std::string, std::size_t> count;
   for (const CadNote& note : notes) {
     const std::size_t k = ++count[note.kind];
-    if (k <= kShownOfKind) fmt::print("{:<14} {}: {}\n", word, note.kind, note.message);
+    if (k <= kShownOfKind) text += fmt::format("{:<14} {}: {}\n", word, note.kind, note.message);
   }
   for (const auto& [kind, n] : count)
-    if (n > kShownOfKind) fmt::print("{:<14} {}: and {} more (--json lists all)\n", word, kind, n - kShownOfKind);
+    if (n > kShownOfKind)
+      text += fmt::format("{:<14} {}: and {} more (--json lists all)\n", word, kind, n - kShownOfKind);
+  return text;
 }
 
-void print_cad(const CadReport& cad) {
-  fmt::print("CAD            {}, {} solid{}, {} shell{}{}\n", cad.format, cad.solids, cad.solids == 1 ? "" : "s",
-             cad.shells, cad.shells == 1 ? "" : "s",
-             cad.free_edges > 0 ? fmt::format(", open: {} free edges", cad.free_edges) : "");
-  fmt::print("unit           {}\n", cad.unit.empty() ? "the file does not say" : cad.unit);
-  fmt::print("tolerance      up to {:.3g}\n", cad.largest_tolerance);
-  if (cad.internal_edges > 0) fmt::print("left out       {} edges within faces\n", cad.internal_edges);
-  print_notes("repaired", cad.repairs);
-  print_notes("suspicious", cad.suspicious);
+std::string cad_text(const CadReport& cad) {
+  std::string text = fmt::format("CAD            {}, {} solid{}, {} shell{}{}\n", cad.format, cad.solids,
+                                 cad.solids == 1 ? "" : "s", cad.shells, cad.shells == 1 ? "" : "s",
+                                 cad.free_edges > 0 ? fmt::format(", open: {} free edges", cad.free_edges) : "");
+  for (std::size_t i = 0; i < std::min(kShownOpen, cad.open_at.size()); ++i)
+    text += fmt::format("open           {}\n", cad.open_at[i].message);
+  if (cad.free_edges > kShownOpen)
+    text += fmt::format("               and {} more free edges\n", cad.free_edges - kShownOpen);
+  text += fmt::format("unit           {}\n", cad.unit.empty() ? "the file does not say" : cad.unit);
+  text += fmt::format("tolerance      up to {:.3g}\n", cad.largest_tolerance);
+  if (cad.internal_edges > 0) text += fmt::format("left out       {} edges within faces\n", cad.internal_edges);
+  text += notes_text("repaired", cad.repairs);
+  text += notes_text("suspicious", cad.suspicious);
+  return text;
 }
 
 }  // namespace
@@ -112,32 +123,40 @@ Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport
                  {"below_25", grid.below_25_deg},
                  {"largest_distance", grid.largest_distance},
                  {"largest_normal_angle", grid.largest_normal_angle_deg}}}};
+  if (!brep.regions.empty()) json["regions"] = brep.regions;
   if (!cad.format.empty()) json["cad"] = cad_json(cad);
   return json;
 }
 
-void print_geometry(const Brep& brep, const BrepGridReport& grid, const CadReport& cad) {
+std::string geometry_text(const Brep& brep, const BrepGridReport& grid, const CadReport& cad, bool is_quick) {
+  std::string text;
   std::size_t shown = 0, edges = 0;
   for (const BrepEdge& e : brep.edges) edges += !e.is_degenerate();
-  if (!cad.format.empty()) print_cad(cad);
-  fmt::print("geometry       {} corners, {} edges, {} faces\n", brep.corners.size(), edges, brep.faces.size());
+  if (!cad.format.empty()) text += cad_text(cad);
+  text += fmt::format("geometry       {} corners, {} edges, {} faces\n", brep.corners.size(), edges, brep.faces.size());
   for (const BrepCorner& c : brep.corners)
     if (!c.name.empty() && shown++ < kShown)
-      fmt::print("corner         {:<20} {:g} {:g} {:g}\n", c.name, c.at.x, c.at.y, c.at.z);
+      text += fmt::format("corner         {:<20} {:g} {:g} {:g}\n", c.name, c.at.x, c.at.y, c.at.z);
   shown = 0;
   for (const BrepEdge& e : brep.edges)
     if (!e.name.empty() && shown++ < kShown)
-      fmt::print("edge           {:<20} length {:.6g}, {}\n", e.name, length_of(e), ends_of(brep, e));
+      text += fmt::format("edge           {:<20} length {:.6g}, {}\n", e.name, length_of(e), ends_of(brep, e));
   for (std::size_t f = 0; f < std::min(kShown, brep.faces.size()); ++f) {
     const BrepFace& face = brep.faces[FaceId(f)];
     const BrepFaceReport& made = grid.faces[f];
     std::string what = face.kind.empty() ? "" : face.kind + ", ";
     if (f < cad.faces.size()) what += cad.faces[f].surface + ", ";
     if (f < cad.faces.size() && !cad.faces[f].colour.empty()) what += "colour " + cad.faces[f].colour + ", ";
-    fmt::print("face {:<9} {:<20} {}{} loop{}, {} triangles of usual size, angles from {:.1f} deg\n", f + 1, face.name,
-               what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles, made.min_angle_deg);
+    text += fmt::format("face {:<9} {:<20} {}{} loop{}, {} triangles {}, angles from {:.1f} deg\n", f + 1, face.name,
+                        what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles,
+                        is_quick ? "at a first look" : "of usual size", made.min_angle_deg);
   }
-  if (brep.faces.size() > kShown) fmt::print("               and {} more faces\n", brep.faces.size() - kShown);
+  for (std::size_t r = 0; r < std::min(kShown, brep.regions.size()); ++r)
+    text += fmt::format("solid {:<8} {}\n", r + 1, brep.regions[r].empty() ? "has no name" : brep.regions[r]);
+  if (brep.regions.size() > kShown)
+    text += fmt::format("               and {} more solids\n", brep.regions.size() - kShown);
+  if (brep.faces.size() > kShown) text += fmt::format("               and {} more faces\n", brep.faces.size() - kShown);
+  return text;
 }
 
-}  // namespace delfront::cli
+}  // namespace delfront
