@@ -47,8 +47,12 @@ Inspected inspect_brep(Brep brep, CadReport cad, const std::string& stem, const 
   result.cad = std::move(cad);
   result.is_quick = result.cad.free_edges > 0 || result.brep.faces.size() > kManyFaces;
   Mesh grid;
-  with_file(path, doubt_of(result.cad),
-            [&] { grid = grid_to_look_at(result.brep, result.is_quick, context, result.brep_grid); });
+  try {
+    with_file(path, doubt_of(result.cad),
+              [&] { grid = grid_to_look_at(result.brep, result.is_quick, context, result.brep_grid); });
+  } catch (const MeshingError& e) {  // nothing was asked for but whether it can be gridded
+    throw InputError(e.what(), e.places);
+  }
   look_at_inputs({{std::move(grid), stem}}, result, context);
   return result;
 }
