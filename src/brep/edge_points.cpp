@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/parallel.hpp"
+#include "brep/sharp_corners.hpp"
 #include "delfront/errors.hpp"
 #include "fmt/format.h"
 
@@ -116,7 +117,11 @@ namespace {
 
 class Divider {
  public:
-  Divider(const Brep& brep, const WantedSize& size) : brep_(brep), size_(size), uses_(brep.edges.size()) {
+  Divider(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided)
+      : brep_(brep),
+        size_(size),
+        ranges_(ranges_between_sharp_corners(brep, size, long_sided)),
+        uses_(brep.edges.size()) {
     for (const BrepFace& face : brep.faces)
       for (const auto& loop : face.loops)
         for (const BrepUse& use : loop) uses_[use.edge.index()].push_back({face.surface.get(), use.curve.get()});
@@ -161,7 +166,11 @@ class Divider {
         bend = std::max(bend, largest_curvature(beside.surface->derivatives(beside.curve->at(t))));
       return CurveSample{c.at, c.first, bend};
     };
-    return divide_curve(sample, edge.range, size_, is_closed ? 3 : 1);
+    const std::array<double, 2>& range = ranges_[EdgeId(e)];
+    std::vector<double> t = divide_curve(sample, range, size_, is_closed ? 3 : 1);
+    if (range[0] != edge.range[0]) t.insert(t.begin(), edge.range[0]);
+    if (range[1] != edge.range[1]) t.push_back(edge.range[1]);
+    return t;
   }
 
   void number(const BrepEdge& edge, EdgePoints& made, std::size_t& next) const {
@@ -184,14 +193,15 @@ class Divider {
 
   const Brep& brep_;
   const WantedSize& size_;
+  Array<EdgeId, std::array<double, 2>> ranges_;  ///< that sizes divide
   std::vector<std::vector<Beside>> uses_;
 };
 
 }  // namespace
 
-Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, std::size_t& num_vertices,
-                                       Context& context) {
-  return Divider(brep, size).run(num_vertices, context);
+Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided,
+                                       std::size_t& num_vertices, Context& context) {
+  return Divider(brep, size, long_sided).run(num_vertices, context);
 }
 
 FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges) {

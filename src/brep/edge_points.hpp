@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "brep/face_grid.hpp"
@@ -8,14 +9,16 @@
 namespace delfront {
 
 /// @brief Divide all edges so that each side is as long as the sizes there: the integral of 1 / h over arc length,
-/// rounded, in equal parts (F3). What bends along an edge, or on the faces beside it, counts.
+/// rounded, in equal parts (F3). What bends along an edge, or on the faces beside it, counts. First sides in sharp
+/// corners of faces may be longer (ranges_between_sharp_corners).
 ///
 /// Vertices are numbered: corners first, then those within edges. Closed edges get three sides at least, open edges
 /// that share both corners two.
+/// @param long_sided    corners where first sides are longer
 /// @param num_vertices  set to the number of all
 /// @par Source  Löhner (2008), 2.6: sides along curves
-Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, std::size_t& num_vertices,
-                                       Context& context);
+Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided,
+                                       std::size_t& num_vertices, Context& context);
 
 /// @brief Points that divide a curve in equal parts of the integral of 1 / h over arc length.
 /// @param derivatives  of place by t, and what bends there, 1 / length

@@ -14,6 +14,7 @@
 #include "brep/bridge.hpp"
 #include "brep/edge_points.hpp"
 #include "brep/face_mesh.hpp"
+#include "brep/sharp_corners.hpp"
 #include "brep/vague_normals.hpp"
 #include "delfront/errors.hpp"
 #include "geometry/angles.hpp"
@@ -27,6 +28,7 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
+constexpr double kNeedleDeg = 20;            ///< in sharp corners, below: their first sides become longer
 constexpr double kFairAngleDeg = 15;         ///< below, another way is tried
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
 constexpr int kFolded = 4;                   ///< failures of a face until its triangles may face against its surface
@@ -58,6 +60,7 @@ class BrepGridder {
       const StageTimer timer(context_, "crossings");
       Model model = assemble();
       if (options_.checks_crossings && !mend_crossings(model)) continue;
+      if (lengthen_sharp_sides(model)) continue;
       fill_report(model);
       return model;
     }
@@ -125,14 +128,22 @@ class BrepGridder {
     return std::move(grid.model);
   }
 
+  /// In sharp corners with needles that could not be bridged, once each. @return whether there are any new ones
+  bool lengthen_sharp_sides(const Model& model) {
+    if (report_.rounds == std::size_t(options_.most_rounds)) return false;
+    const std::size_t before = long_sided_.size();
+    for (const CornerId c : find_needles_in_corners(brep_, model, report_.entity, kNeedleDeg)) long_sided_.insert(c);
+    return long_sided_.size() > before;
+  }
+
   /// F3, twice: from sides that are shorter than asked for, sizes grow.
   void divide() {
     working_.lower(lowered_, context_);
-    edges_ = divide_edges(brep_, wanted_, num_vertices_, context_);
+    edges_ = divide_edges(brep_, wanted_, long_sided_, num_vertices_, context_);
     const BoundarySizes sizes = find_short_sides();
     if (sizes.points.size() == lowered_.points.size()) return;
     working_.lower(sizes, context_);
-    edges_ = divide_edges(brep_, wanted_, num_vertices_, context_);
+    edges_ = divide_edges(brep_, wanted_, long_sided_, num_vertices_, context_);
   }
 
   /// Beside the places where sizes are lowered already.
@@ -356,6 +367,7 @@ class BrepGridder {
   WorkingSize working_;
   WantedSize wanted_;
   BoundarySizes lowered_;
+  std::set<CornerId> long_sided_;  ///< sharp corners whose first sides are longer than sizes say
   Array<EdgeId, EdgePoints> edges_;
   Array<FaceId, FaceGrid> grids_;
   std::vector<int> failures_;

@@ -24,6 +24,7 @@ constexpr double kLeastRatio = 1e-16;   ///< between squared lengths along the a
 constexpr double kMostSkew = 1 - 1e-9;  ///< cosine between what the axes are in space
 constexpr double kMostStretch = 25;     ///< of lengths over directions, in a chart that is used
 constexpr double kMostChange = 3;       ///< of lengths in space over one wanted side, in a chart that is used
+constexpr double kStepChange = 1.5;     ///< the same, from where the metric is that of whole sides
 constexpr double kTryPolar = 2.5;       ///< stretch of a linear chart from where a polar one is tried
 constexpr double kEven = 1.02;          ///< of stretch, and of lengths anywhere over those elsewhere
 constexpr int kSamples = 17;            ///< each way, to look at a chart
@@ -172,8 +173,9 @@ ChartLook look_at(const Chart& chart, std::span<const Point2> places, const Para
 
 /// Linear, or polar round the part's pole, or round one that it has no part in where that is better (and was not cut
 /// off, since a chart round it would span too much).
+/// @param change  set to that of lengths over one wanted side
 std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& part, const ParameterBox& box,
-                                  const WantedSize& size, ChartWay way, FaceGrid& grid) {
+                                  const WantedSize& size, ChartWay way, FaceGrid& grid, double& change) {
   std::optional<Chart> best;
   best.emplace(surface, box, part.pole);
   const std::vector<Point2> places = places_to_look_at(grid, part, box);
@@ -194,6 +196,7 @@ std::optional<Chart> choose_chart(const SmoothSurface& surface, const FacePart& 
       best.emplace(surface, box, pole);
     }
   }
+  change = look.change;
   if (way != ChartWay::even) return best;
   if (look.stretch > kMostStretch)
     grid.fail(fmt::format("the mapping stretches lengths by {:.3g} in one direction over another", look.stretch),
@@ -342,12 +345,13 @@ void grid_mapped(const BrepFace& face, const WantedSize& size, const BrepOptions
   try {
     for (const FacePart& part : find_parts(face, size, way == ChartWay::cut_off, grid)) {
       const ParameterBox box = box_of(grid, part);
+      double change = 1;
       const std::optional<Chart> chart = way == ChartWay::flat
                                              ? flat_chart(*face.surface, part, box, grid)
-                                             : choose_chart(*face.surface, part, box, size, way, grid);
+                                             : choose_chart(*face.surface, part, box, size, way, grid, change);
       if (!chart) return;
       ChartedPart charted(part, *chart, grid);
-      const bool by_steps = way == ChartWay::any || way == ChartWay::cut_off;
+      const bool by_steps = way == ChartWay::any || way == ChartWay::cut_off || change > kStepChange;
       charted.fill(size, size.is_lowered_on(*face.surface, box), by_steps, box, options, context);
       if (!grid.gave_up.empty()) return;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "brep/sharp_corners.hpp"
 #include "brep_sizes/size_parts.hpp"
 #include "geometry/angles.hpp"
 #include "geometry/surface.hpp"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kSharp = 30 * kDegree;  ///< corners of faces under it have sharp triangles whatever is done
 constexpr double kSharpReach = 0.5;      ///< over the angle in radians: sides from such a corner that do not count
+constexpr double kLeastAngle = 1e-3;     ///< radians, of it
 constexpr double kNearGoal = 0.7;        ///< of the goal: from there deviations are found exactly
 constexpr double kAtLeast = 1.5;         ///< times hmin: sides up to that are as small as they may be
 constexpr double kLeastShare = 0.5;      ///< one round lowers sizes by no more
@@ -29,30 +31,6 @@ struct Looked {
   Point deviation_at;
 };
 
-struct SharpCorner {
-  Point at;
-  double angle;
-};
-
-/// Corners of faces where their borders meet at a small angle, inside.
-std::vector<SharpCorner> find_sharp_corners(const Brep& brep) {
-  std::vector<SharpCorner> found;
-  for (const BrepFace& face : brep.faces)
-    for (const auto& loop : face.loops)
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const BrepUse &in = loop[i], &out = loop[(i + 1) % loop.size()];
-        const BrepEdge &a = brep.edges[in.edge], &b = brep.edges[out.edge];
-        if (a.is_degenerate() || b.is_degenerate()) continue;
-        const double ta = a.range[in.is_reversed ? 0 : 1], tb = b.range[out.is_reversed ? 1 : 0];
-        const CurveDerivatives from = a.curve->derivatives(ta), to = b.curve->derivatives(tb);
-        const Point back = (in.is_reversed ? 1.0 : -1.0) * from.first, on = (out.is_reversed ? -1.0 : 1.0) * to.first;
-        const double angle = angle_between(back, on);
-        const bool is_outside = dot(cross(on, back), face.surface->normal(in.curve->at(ta))) < 0;
-        if (angle < kSharp && !is_outside) found.push_back({from.at, std::max(angle, 1e-3)});
-      }
-  return found;
-}
-
 class Measurer {
  public:
   Measurer(const Brep& brep, const Model& grid, const BrepGridReport& report, const SizeField& size,
@@ -65,7 +43,7 @@ class Measurer {
         lowered_(lowered),
         context_(context),
         pieces_(pieces_of(brep, grid, report)),
-        sharp_(find_sharp_corners(brep)) {
+        sharp_(find_sharp_corners(brep, kSharp)) {
     for (const BrepEdge& edge : brep.edges)
       if (edge.is_degenerate()) tips_.push_back(brep.corners[edge.corners[0]].at);
   }
@@ -158,8 +136,9 @@ class Measurer {
     const auto is_near = [&](Point corner, double reach) {
       return std::any_of(p.at.begin(), p.at.end(), [&](Point q) { return distance(q, corner) <= reach; });
     };
-    return std::any_of(sharp_.begin(), sharp_.end(),
-                       [&](const SharpCorner& c) { return is_near(c.at, h * std::max(1.5, kSharpReach / c.angle)); });
+    return std::any_of(sharp_.begin(), sharp_.end(), [&](const SharpCorner& c) {
+      return is_near(c.at, h * std::max(1.5, kSharpReach / std::max(c.angle, kLeastAngle)));
+    });
   }
 
   /// At the corners and the middle of a triangle sizes are to be this share of what its sides are, or of what is asked

@@ -41,6 +41,14 @@ class CadFiles(case.Case):
         self.assertEqual(geometry["cad"]["unit"], "in")
         self.assertEqual([face["surface"] for face in geometry["faces"]], ["plane"] * 6)
 
+    def test_angles_are_fair_away_from_sharp_corners(self):
+        folder = self.needs_module().parent
+        for path in sorted(folder.iterdir()):
+            with self.subTest(path.name):
+                self.expect(0, "mesh", path, "-o", "grid.vtu", "--stop-after", "surface", "--report", "grid.json")
+                last = self.report("grid.json")["geometry"][0]["rounds"][-1]
+                self.assertGreater(last["min_angle_away_from_sharp_corners"]["value"], 20)
+
     def test_lengths_in_units_need_no_more_said(self):
         path = self.needs_module()
         self.expect(0, "mesh", path, "-o", "cube.stl", "--stop-after", "surface", "--hmax", "100mm", "--report", "cube.json")

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prisms with sides too narrow for the cells: what is gridded across, and what is not.
-#include <map>
-
 #include "brep_fixtures.hpp"
 #include "delfront/uniform_size.hpp"
 
@@ -9,54 +7,6 @@ namespace delfront {
 namespace {
 
 using namespace fixtures;
-
-/// A solid of plane faces, each a ring of points, anticlockwise from outside; named face_0, face_1, ...
-Brep make_polyhedron(const std::vector<Point>& points, const std::vector<std::vector<std::size_t>>& faces) {
-  Brep brep;
-  for (const Point& p : points) brep.corners.push_back({p, ""});
-  std::map<std::pair<std::size_t, std::size_t>, EdgeId> edges;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const std::vector<std::size_t>& ring = faces[f];
-    Point normal;
-    for (std::size_t k = 0; k < ring.size(); ++k)
-      normal = normal + cross(points[ring[k]] - points[ring[0]], points[ring[(k + 1) % ring.size()]] - points[ring[0]]);
-    SpaceFrame frame{points[ring[0]]};
-    frame.z = normal / length(normal);
-    frame.x = (points[ring[1]] - points[ring[0]]) / distance(points[ring[1]], points[ring[0]]);
-    frame.y = cross(frame.z, frame.x);
-    const auto flat = [&](std::size_t p) {
-      return Point2{dot(points[p] - frame.origin, frame.x), dot(points[p] - frame.origin, frame.y)};
-    };
-    BrepFace face;
-    face.surface = make_plane_surface(frame);
-    face.name = "face_" + std::to_string(f);
-    face.loops.emplace_back();
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const std::size_t a = ring[k], b = ring[(k + 1) % ring.size()];
-      const auto [low, high] = std::minmax({a, b});
-      const auto [it, is_new] = edges.try_emplace({low, high}, brep.edges.next_id());
-      if (is_new) brep.edges.push_back({make_line(points[low], points[high]), {0, 1}, {CornerId(low), CornerId(high)}});
-      face.loops[0].push_back({it->second, make_parameter_line(flat(low), flat(high)), a > b});
-    }
-    brep.faces.push_back(std::move(face));
-  }
-  return brep;
-}
-
-/// Over a polygon, anticlockwise from above: bottom, top, then the sides.
-Brep make_prism(const std::vector<Point2>& polygon, double height) {
-  const std::size_t n = polygon.size();
-  std::vector<Point> points;
-  for (const Point2 p : polygon) points.push_back({p.x, p.y, 0});
-  for (const Point2 p : polygon) points.push_back({p.x, p.y, height});
-  std::vector<std::vector<std::size_t>> faces(2);
-  for (std::size_t k = 0; k < n; ++k) {
-    faces[0].push_back(n - 1 - k);
-    faces[1].push_back(n + k);
-    faces.push_back({k, (k + 1) % n, n + (k + 1) % n, n + k});
-  }
-  return make_polyhedron(points, faces);
-}
 
 double area_of(const std::vector<Point2>& polygon) {
   double twice = 0;
