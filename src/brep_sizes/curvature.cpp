@@ -18,7 +18,7 @@ constexpr std::size_t kGrain = 128;
 
 class CurvatureFinder {
  public:
-  CurvatureFinder(const Brep& brep, const BrepSizes& wish) : brep_(brep), wish_(wish) {}
+  explicit CurvatureFinder(const BrepSizes& wish) : wish_(wish) {}
 
   void look_at_piece(const FacePiece& piece, int cuts, GeometrySources& found) const {
     double least = wish_.hmax, most = 0;
@@ -73,7 +73,6 @@ class CurvatureFinder {
     add_source(found, simplex(c[0].at, c[2].at), *least, wish_.hmin, "curvature");
   }
 
-  const Brep& brep_;
   const BrepSizes& wish_;
 };
 
@@ -84,7 +83,7 @@ GeometrySources find_curvature(const Brep& brep, std::span<const FacePiece> piec
   GeometrySources found;
   const CurvatureSizes& c = wish.curvature;
   if (!c.cells_per_turn && !c.angle_deg && !c.deviation) return found;
-  const CurvatureFinder finder(brep, wish);
+  const CurvatureFinder finder(wish);
   std::vector<GeometrySources> blocks((pieces.size() + kGrain - 1) / kGrain);
   parallel_ranges(context.threads, pieces.size(), kGrain, [&](std::size_t first, std::size_t last) {
     context.check_limits();

@@ -35,8 +35,7 @@ class Measurer {
  public:
   Measurer(const Brep& brep, const Model& grid, const BrepGridReport& report, const SizeField& size,
            const BrepGoals& goals, BoundarySizes* lowered, const Context& context)
-      : brep_(brep),
-        grid_(grid),
+      : grid_(grid),
         report_(report),
         size_(size),
         goals_(goals),
@@ -206,7 +205,6 @@ class Measurer {
     return report_.entity[a.index()].dimension < 2 && report_.entity[b.index()].dimension < 2;
   }
 
-  const Brep& brep_;
   const Model& grid_;
   const BrepGridReport& report_;
   const SizeField& size_;

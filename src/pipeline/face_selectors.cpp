@@ -254,7 +254,7 @@ void name_selected_faces(const std::vector<BoundaryOptions>& boundaries, const s
   for (const BoundaryOptions& boundary : boundaries)
     for (const auto& [face, name] : named)
       if (name == boundary.name &&
-          std::none_of(last.begin(), last.end(), [&](const auto& l) { return l.second == name; }))
+          std::none_of(last.begin(), last.end(), [&](const auto& l) { return l.second == boundary.name; }))
         fail(boundary,
              fmt::format("boundaries that come later select all of its faces (face {}: '{}'); of those that select "
                          "the same face the last one has it",

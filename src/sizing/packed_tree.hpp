@@ -78,7 +78,7 @@ class PackedTree {
   /// @brief The item with the least value_of(item) at most `start.value`; of equals the lowest number.
   /// @param bound_of  bound_of(node): no value of an item in it is lower
   template <class Bound, class Value>
-  Best minimize(Bound&& bound_of, Value&& value_of, Best start = {}) const {
+  Best minimize(Bound&& bound_of, Value&& value_of, Best start) const {
     Best best = start;
     if (is_empty()) return best;
     Entry stack[kMaxStack];
@@ -104,6 +104,10 @@ class PackedTree {
       }
     }
     return best;
+  }
+  template <class Bound, class Value>
+  Best minimize(Bound&& bound_of, Value&& value_of) const {
+    return minimize(bound_of, value_of, Best{});
   }
 
   /// @brief The item nearest to p by `squared_distance_to`, which is never below that of its box.

@@ -15,7 +15,6 @@
 namespace delfront {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kCells = static_cast<double>(1u << SourceLists::kLevels);
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -98,7 +99,7 @@ void decide_holes(std::vector<RegionFacts>& facts, const std::map<Border, std::s
       if (winding[b] != kUnknown && winding[a] == kUnknown) votes[a].push_back(winding[b] - 1);
     }
     for (const auto& [component, given] : votes) {
-      const bool all_equal = std::all_of(given.begin(), given.end(), [&](int w) { return w == given[0]; });
+      const bool all_equal = std::adjacent_find(given.begin(), given.end(), std::not_equal_to<>()) == given.end();
       winding[component] = all_equal ? given[0] : 1;
       facts[component].is_undecided = !all_equal;
       facts[component].is_hole = all_equal && given[0] == 0;
