@@ -22,12 +22,13 @@ HEAD = """<!-- made by scripts/cad_table.py -->
 # CAD files, on the shared geometry
 
 `mesh FILE` with no sizes given. Rounds of gridding until the goals are met; bridges: places narrower than hmin that are gridded
-across. Deviation: the largest distance of the grid from its surface, in per cent of the diagonal. Seconds are wall time of
+across. Away from sharp corners: without the triangles in and beside corners of faces below 30 degrees, which are as sharp
+whatever is done. Deviation: the largest distance of the grid from its surface, in per cent of the diagonal. Seconds are wall time of
 reading, all gridding of the surface and all checks. Volumes by `--volume-method front-delaunay` and `front`: tetrahedra, the smallest
 dihedral angle, and what `check_mesh.py` says of them; open surfaces have none.
 
-| file | unit | faces | repairs | triangles | rounds | bridges | smallest angle | below 25 | deviation, % | seconds | tetrahedra | smallest dihedral | front | smallest dihedral | verdict |
-| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |
+| file | unit | faces | repairs | triangles | rounds | bridges | smallest angle | away from sharp corners | below 25 | deviation, % | seconds | tetrahedra | smallest dihedral | front | smallest dihedral | verdict |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |
 """
 
 
@@ -72,7 +73,7 @@ def judge(path, options, folder):
         os.remove(facts)
     code, said, _ = run([options.delfront, "info", path, "--json", facts], options.timeout)
     if not os.path.exists(facts):
-        return [""] * 14, f"info: exit {code}: {said}"
+        return [""] * 15, f"info: exit {code}: {said}"
     looked = read_json(facts)
     cad = looked["geometry"]["cad"]
     cells = [cad["unit"] or "-", str(len(looked["geometry"]["faces"])), str(len(cad["repairs"]))]
@@ -80,12 +81,13 @@ def judge(path, options, folder):
     code, said, seconds = run([options.delfront, "mesh", path, "-o", surface, "--stop-after", "surface", "--report",
                                report], options.timeout)
     if code != 0:
-        return cells + [""] * 11, f"surface: exit {code}: {said}"
+        return cells + [""] * 12, f"surface: exit {code}: {said}"
     made = read_json(report)
     smooth = made["geometry"][0]
     last = smooth["rounds"][-1]
     cells += [f"{last['triangles']:,}", str(len(smooth["rounds"])), str(len(smooth["bridges"])),
-              f"{last['min_angle']:.1f}", str(sum(last["angles"]["counts"][:5])),
+              f"{last['min_angle']:.1f}", f"{last['min_angle_away_from_sharp_corners']['value']:.1f}",
+              str(sum(last["angles"]["counts"][:5])),
               f"{100 * last['deviation']['value'] / made['scale']['diagonal']:.2g}", f"{seconds:.1f}"]
     if not made["surface"]["can_bound_volume"] or options.surface:
         return cells + [""] * 4, "" if options.surface or cad["free_edges"] else "cannot bound a volume"
@@ -93,7 +95,7 @@ def judge(path, options, folder):
         more, problem = fill(path, method, options, folder)
         cells += more
         if problem:
-            return cells + [""] * (14 - len(cells)), problem
+            return cells + [""] * (15 - len(cells)), problem
     return cells, ""
 
 

@@ -78,8 +78,7 @@ std::shared_ptr<const SizeField> field_of(nb::object function, Runner& runner) {
       std::numeric_limits<double>::min(), quiet);
 }
 
-// --- results
-// ----------------------------------------------------------------------------------------------------------
+// --- results --------------------------------------------------------------------------------------------------------
 
 std::vector<Finding> all_findings(const JobResult& result) {
   std::vector<Finding> findings = result.report.surface.findings;

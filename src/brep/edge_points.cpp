@@ -31,7 +31,7 @@ double rounded(double t, std::array<double, 2> range) {
 /// that, every second place is known.
 class Density {
  public:
-  Density(const std::function<CurveSample(double)>& sample, std::array<double, 2> range, const WantedSize& size)
+  Density(const SampleCurve& sample, std::array<double, 2> range, const WantedSize& size)
       : sample_(sample), range_(range), size_(size) {}
 
   const std::vector<double>& at(std::size_t panels) {
@@ -39,26 +39,30 @@ class Density {
     const std::size_t step = is_next ? 2 : 1;
     std::vector<double> value(panels + 1);
     for (std::size_t i = 0; is_next && i <= panels; i += 2) value[i] = value_[i / 2];
+    const bool wants_curvature = is_bent_ || panels <= 2 * kLeastPanels;
     std::vector<CurveSample> samples;
     std::vector<Point> at;
     for (std::size_t i = step - 1; i <= panels; i += step) {
       const double f = double(i) / double(panels);
-      samples.push_back(sample_((1 - f) * range_[0] + f * range_[1]));
+      samples.push_back(sample_((1 - f) * range_[0] + f * range_[1], wants_curvature));
       at.push_back(samples.back().at);
     }
     std::vector<double> h(at.size());
     size_.asked().sizes(at, h);
-    for (std::size_t k = 0; k < h.size(); ++k)
+    for (std::size_t k = 0; k < h.size(); ++k) {
+      is_bent_ = is_bent_ || size_.is_nearly_lowered(h[k], samples[k].curvature);
       value[step - 1 + k * step] = length(samples[k].first) / size_.lowered(h[k], samples[k].curvature, at[k]);
+    }
     value_ = std::move(value);
     return value_;
   }
 
  private:
-  const std::function<CurveSample(double)>& sample_;
+  const SampleCurve& sample_;
   std::array<double, 2> range_;
   const WantedSize& size_;
   std::vector<double> value_;
+  bool is_bent_ = false;  ///< bends may count
 };
 
 /// By Simpson's rule, to the middle of each pair of panels by the parabola through its three values.
@@ -74,8 +78,8 @@ std::vector<double> integrate(const std::vector<double>& density, double step) {
 
 }  // namespace
 
-std::vector<double> divide_curve(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
-                                 const WantedSize& size, std::size_t least) {
+std::vector<double> divide_curve(const SampleCurve& sample, std::array<double, 2> range, const WantedSize& size,
+                                 std::size_t least) {
   Density densities(sample, range, size);
   std::vector<double> density, sum;
   double before = -1;
@@ -158,8 +162,9 @@ class Divider {
     const BrepEdge& edge = brep_.edges[EdgeId(e)];
     if (edge.is_degenerate()) return {edge.range[0], edge.range[1]};
     const bool is_closed = edge.corners[0] == edge.corners[1];
-    const auto sample = [&](double t) {
+    const auto sample = [&](double t, bool wants_curvature) {
       const CurveDerivatives c = edge.curve->derivatives(t);
+      if (!wants_curvature) return CurveSample{c.at, c.first, 0};
       const double speed = length(c.first);
       double bend = speed > 0 ? length(cross(c.first, c.second)) / (speed * speed * speed) : 0;
       for (const Beside& beside : uses_[e])

@@ -21,12 +21,14 @@ Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size,
                                        std::size_t& num_vertices, Context& context);
 
 /// @brief Points that divide a curve in equal parts of the integral of 1 / h over arc length.
-/// @param derivatives  of place by t, and what bends there, 1 / length
+/// @param sample  place and derivative by t; and where it is asked for, what bends there, 1 / length. That is no longer
+///                asked for where sizes turn out to be far from what bends allow.
 struct CurveSample {
   Point at, first;
   double curvature;
 };
-std::vector<double> divide_curve(const std::function<CurveSample(double)>& sample, std::array<double, 2> range,
-                                 const WantedSize& size, std::size_t least);
+using SampleCurve = std::function<CurveSample(double t, bool wants_curvature)>;
+std::vector<double> divide_curve(const SampleCurve& sample, std::array<double, 2> range, const WantedSize& size,
+                                 std::size_t least);
 
 }  // namespace delfront

@@ -62,7 +62,7 @@ std::vector<std::uint32_t> add_cut(const BrepFace& face, const WantedSize& size,
   const Point2 from = grid.points[p].uv, to = grid.points[q].uv;
   const double du = to.x - from.x, dv = to.y - from.y;
   const auto place = [&](double t) { return Point2{from.x + t * du, from.y + t * dv}; };
-  const auto sample = [&](double t) {
+  const auto sample = [&](double t, bool) {
     const SurfaceDerivatives s = face.surface->derivatives(place(t));
     return CurveSample{s.at, du * s.u + dv * s.v, largest_curvature(s)};
   };

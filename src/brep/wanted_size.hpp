@@ -41,6 +41,9 @@ class WantedSize {
     return std::min(asked, allowed);
   }
 
+  /// @brief Whether a bend twice as strong would lower an asked size.
+  bool is_nearly_lowered(double asked, double curvature) const { return 2 * asked * curvature > most_turn_; }
+
   /// @brief Whether lowered() says less than is asked for anywhere on a face, by samples in a box of parameters.
   bool is_lowered_on(const SmoothSurface& surface, const ParameterBox& box) const;
 

@@ -5,7 +5,7 @@
 
 namespace delfront {
 
-/// A visitor has type(value, allowed), required(key, value) and optional(key, value, usual).
+/// A visitor has type(value, allowed), kind(value), required(key, value) and optional(key, value, usual).
 
 template <class Visitor, class Frame>
 void visit_frame(Visitor& v, Frame& frame) {
@@ -86,7 +86,7 @@ template <class Visitor, class Face>
 void visit_face(Visitor& v, Face& face) {
   const TextFace usual;
   v.optional("name", face.name, usual.name);
-  v.optional("kind", face.kind, usual.kind);
+  v.kind(face.kind);
   v.required("surface", face.surface);
   v.optional("reversed", face.reversed, usual.reversed);
   v.optional("loops", face.loops, usual.loops);
@@ -97,7 +97,7 @@ void visit_shape(Visitor& v, Shape& shape) {
   const TextShape usual;
   v.type(shape.type, {"sphere", "box", "cylinder", "cone", "torus"});
   v.optional("name", shape.name, usual.name);
-  v.optional("kind", shape.kind, usual.kind);
+  v.kind(shape.kind);
   if (shape.type == "box") {
     v.required("min", shape.min);
     v.required("max", shape.max);

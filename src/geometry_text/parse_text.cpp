@@ -10,6 +10,7 @@
 #include <initializer_list>
 
 #include "base/nearest_name.hpp"
+#include "geometry/boundary_kinds.hpp"
 #include "base/toml_letters.hpp"
 #include "delfront/errors.hpp"
 #include "geometry_text/fields.hpp"
@@ -28,10 +29,11 @@ class Reader {
 
   void type(std::string& value, std::initializer_list<const char*> allowed) {
     required("type", value);
-    const std::vector<std::string> names(allowed.begin(), allowed.end());
-    if (std::find(names.begin(), names.end(), value) != names.end()) return;
-    fail(*table_.get("type"),
-         fmt::format("there is no type '{}'; types are {}{}", value, fmt::join(names, ", "), meant(value, names)));
+    check_word("type", value, std::vector<std::string>(allowed.begin(), allowed.end()));
+  }
+  void kind(std::string& value) {
+    optional("kind", value, {});
+    if (!value.empty()) check_word("kind", value, boundary_kinds());
   }
   template <class T>
   void required(const char* key, T& value) {
@@ -61,6 +63,11 @@ class Reader {
   }
 
  private:
+  void check_word(const char* key, const std::string& value, const std::vector<std::string>& words) const {
+    if (std::find(words.begin(), words.end(), value) != words.end()) return;
+    fail(*table_.get(key), fmt::format("there is no {} '{}'; {}s are {}{}", key, value, key, fmt::join(words, ", "),
+                                       meant(value, words)));
+  }
   static std::string meant(const std::string& wrong, const std::vector<std::string>& known) {
     const std::string near = nearest_name(wrong, known);
     return near.empty() ? "" : fmt::format(" (did you mean {}?)", near);

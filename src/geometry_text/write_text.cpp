@@ -59,6 +59,7 @@ std::string text_of(const std::vector<T>& items) {
 class Writer {
  public:
   void type(const std::string& value, std::initializer_list<const char*>) { put("type", text_of(value)); }
+  void kind(const std::string& value) { optional("kind", value, {}); }
   template <class T>
   void required(const char* key, const T& value) {
     put(key, text_of(value));

@@ -8,6 +8,7 @@
 
 #include <cctype>
 
+#include "geometry/boundary_kinds.hpp"
 #include "pipeline/option_rows.hpp"
 
 namespace delfront {
@@ -155,8 +156,6 @@ JobValue get_selector(const BoundaryOptions& b) {
 }  // namespace
 
 EntryTable boundary_table() {
-  static const std::vector<std::string> kinds = {"wall",     "patch", "inlet", "outlet", "farfield",
-                                                 "symmetry", "empty", "wedge", "cyclic", "interface"};
   const auto boundaries = [](auto& o) -> auto& { return o.boundaries; };
   EntryTable table = named_table<BoundaryOptions>("boundaries", boundaries);
   table.note = [](Options& o, std::size_t i, const std::string& name, const std::string& place) {
@@ -174,8 +173,8 @@ EntryTable boundary_table() {
       set_selector, get_selector);
   add_entry<BoundaryOptions>(
       table, boundaries,
-      {"kind", Takes::text, "what kind of boundary it is", fmt::format("one of {}", fmt::join(kinds, ", "))},
-      [](BoundaryOptions& b, const JobValue& v) { b.kind = as_choice(v, kinds); },
+      {"kind", Takes::text, "what kind of boundary it is", fmt::format("one of {}", fmt::join(boundary_kinds(), ", "))},
+      [](BoundaryOptions& b, const JobValue& v) { b.kind = as_choice(v, boundary_kinds()); },
       [](const BoundaryOptions& b) { return text_value(b.kind); });
   return table;
 }

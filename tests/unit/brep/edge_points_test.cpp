@@ -14,8 +14,8 @@ namespace {
 
 using namespace fixtures;
 
-std::function<CurveSample(double)> sample_of(const CurvePointer& curve) {
-  return [curve](double t) {
+SampleCurve sample_of(const CurvePointer& curve) {
+  return [curve](double t, bool) {
     const CurveDerivatives c = curve->derivatives(t);
     return CurveSample{c.at, c.first, 0};
   };

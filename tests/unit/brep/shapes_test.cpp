@@ -112,7 +112,7 @@ TEST(Shapes, DerivativesOfCurvesAreTheirDifferences) {
 
 TEST(EdgePoints, EqualPartsOfTheIntegralAndSymmetric) {
   const CurvePointer cubic = make_cubic({Point{0, 0, 0}, {1, 2, 0}, {3, 2, 0}, {4, 0, 0}});  // x -> 4 - x
-  const auto sample = [&](double t) {
+  const auto sample = [&](double t, bool) {
     const CurveDerivatives c = cubic->derivatives(t);
     return CurveSample{c.at, c.first, 0};
   };
@@ -135,7 +135,7 @@ TEST(EdgePoints, EqualPartsOfTheIntegralAndSymmetric) {
 
 TEST(EdgePoints, GradedSidesAreAsLongAsAskedFor) {
   const CurvePointer line = make_line({0, 0, 0}, {10, 0, 0});
-  const auto sample = [&](double t) {
+  const auto sample = [&](double t, bool) {
     const CurveDerivatives c = line->derivatives(t);
     return CurveSample{c.at, c.first, 0};
   };
@@ -152,7 +152,7 @@ TEST(EdgePoints, GradedSidesAreAsLongAsAskedFor) {
 
 TEST(EdgePoints, BendsNeedSidesWhateverIsAskedFor) {
   const CurvePointer circle = make_ellipse({}, 1, 1);
-  const auto sample = [&](double t) {
+  const auto sample = [&](double t, bool) {
     const CurveDerivatives c = circle->derivatives(t);
     return CurveSample{c.at, c.first, 1};
   };

@@ -426,6 +426,8 @@ TEST(GeometryText, WritesWhatItReads) {
 TEST(GeometryText, ErrorsSayLineAndRemedy) {
   expect_mentions(refused("[[shape]\n"), {"part.geom.toml:1", "not valid TOML"});
   expect_mentions(refused("[[shape]]\ntype = \"ball\"\n"), {"part.geom.toml:2", "no type 'ball'", "sphere, box"});
+  expect_mentions(refused("[[shape]]\ntype = \"sphere\"\nradius = 1\nkind = \"wal\"\n"),
+                  {"part.geom.toml:4", "no kind 'wal'", "did you mean wall?"});
   expect_mentions(refused("[[shape]]\ntype = \"sphere\"\n"), {"part.geom.toml:1", "radius is missing"});
   expect_mentions(refused("[[shape]]\ntype = \"sphere\"\nradius = -1\n"), {":1", "above 0"});
   expect_mentions(refused("[[shape]]\ntype = \"sphere\"\nradius = inf\n"), {":3", "finite"});
