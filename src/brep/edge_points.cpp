@@ -13,7 +13,7 @@
 namespace delfront {
 namespace {
 
-constexpr std::size_t kLeastPanels = 32, kMostPanels = std::size_t(1) << 22;
+constexpr std::size_t kLeastPanels = 16, kMostPanels = std::size_t(1) << 22;
 constexpr std::size_t kEnoughPanels = std::size_t(1) << 13;  ///< for densities that jump, and never converge
 constexpr double kPanelsPerSide = 8;
 constexpr double kConverged = 1e-4;  ///< change of the integral, of itself
