@@ -131,13 +131,12 @@ class Divider {
         for (const BrepUse& use : loop) uses_[use.edge.index()].push_back({face.surface.get(), use.curve.get()});
   }
 
-  Array<EdgeId, EdgePoints> run(std::size_t& num_vertices, Context& context) {
-    Array<EdgeId, EdgePoints> points(brep_.edges.size());
+  void run(Array<EdgeId, EdgePoints>& points, std::size_t& num_vertices, Context& context) {
     std::map<std::array<CornerId, 2>, int> single;  // open edges of one side, by their corners
     std::size_t next = brep_.corners.size();
     parallel_for(context.threads, points.size(), [&](std::size_t e) {
       context.check_limits();
-      points[EdgeId(e)].t = divide(e);
+      if (points[EdgeId(e)].t.empty()) points[EdgeId(e)].t = divide(e);
     });
     for (std::size_t e = 0; e < points.size(); ++e) {
       EdgePoints& made = points[EdgeId(e)];
@@ -149,7 +148,6 @@ class Divider {
       number(edge, made, next);
     }
     num_vertices = next;
-    return points;
   }
 
  private:
@@ -179,6 +177,8 @@ class Divider {
   }
 
   void number(const BrepEdge& edge, EdgePoints& made, std::size_t& next) const {
+    made.vertex.clear();
+    made.at.clear();
     const bool has_corners = edge.corners[0].is_valid();
     for (std::size_t i = 0; i < made.t.size(); ++i) {
       const bool is_first = i == 0, is_last = i + 1 == made.t.size();
@@ -204,9 +204,9 @@ class Divider {
 
 }  // namespace
 
-Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided,
-                                       std::size_t& num_vertices, Context& context) {
-  return Divider(brep, size, long_sided).run(num_vertices, context);
+void divide_edges(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided,
+                  Array<EdgeId, EdgePoints>& points, std::size_t& num_vertices, Context& context) {
+  Divider(brep, size, long_sided).run(points, num_vertices, context);
 }
 
 FaceGrid make_face_border(const Brep& brep, const BrepFace& face, const Array<EdgeId, EdgePoints>& edges) {

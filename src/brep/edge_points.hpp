@@ -15,10 +15,11 @@ namespace delfront {
 /// Vertices are numbered: corners first, then those within edges. Closed edges get three sides at least, open edges
 /// that share both corners two.
 /// @param long_sided    corners where first sides are longer
+/// @param points        one an edge: where t is known already it stays
 /// @param num_vertices  set to the number of all
 /// @par Source  Löhner (2008), 2.6: sides along curves
-Array<EdgeId, EdgePoints> divide_edges(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided,
-                                       std::size_t& num_vertices, Context& context);
+void divide_edges(const Brep& brep, const WantedSize& size, const std::set<CornerId>& long_sided,
+                  Array<EdgeId, EdgePoints>& points, std::size_t& num_vertices, Context& context);
 
 /// @brief Points that divide a curve in equal parts of the integral of 1 / h over arc length.
 /// @param sample  place and derivative by t; and where it is asked for, what bends there, 1 / length. That is no longer

@@ -59,8 +59,8 @@ class BrepGridder {
       if (!grid_faces()) continue;
       const StageTimer timer(context_, "crossings");
       Model model = assemble();
-      if (options_.checks_crossings && !mend_crossings(model)) continue;
       if (lengthen_sharp_sides(model)) continue;
+      if (options_.checks_crossings && !mend_crossings(model)) continue;
       fill_report(model);
       return model;
     }
@@ -139,11 +139,36 @@ class BrepGridder {
   /// F3, twice: from sides that are shorter than asked for, sizes grow.
   void divide() {
     working_.lower(lowered_, context_);
-    edges_ = divide_edges(brep_, wanted_, long_sided_, num_vertices_, context_);
+    divide_again();
     const BoundarySizes sizes = find_short_sides();
     if (sizes.points.size() == lowered_.points.size()) return;
     working_.lower(sizes, context_);
-    edges_ = divide_edges(brep_, wanted_, long_sided_, num_vertices_, context_);
+    divide_again();
+  }
+
+  /// Edges with the same sizes at their points as before keep those.
+  void divide_again() {
+    if (edges_.empty()) edges_ = Array<EdgeId, EdgePoints>(brep_.edges.size());
+    std::vector<std::vector<double>> sizes = edge_sizes();
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (edge_sizes_.empty() || sizes[e] != edge_sizes_[e] || is_divided_otherwise(EdgeId(e)))
+        edges_[EdgeId(e)].t.clear();
+    divide_edges(brep_, wanted_, long_sided_, edges_, num_vertices_, context_);
+    edge_sizes_ = edge_sizes();
+    divided_long_sided_ = long_sided_;
+  }
+  bool is_divided_otherwise(EdgeId e) const {
+    const auto& ends = brep_.edges[e].corners;
+    return std::any_of(ends.begin(), ends.end(),
+                       [&](CornerId c) { return long_sided_.contains(c) != divided_long_sided_.contains(c); });
+  }
+  std::vector<std::vector<double>> edge_sizes() {
+    std::vector<std::vector<double>> sizes(edges_.size());
+    parallel_for(context_.threads, sizes.size(), [&](std::size_t e) {
+      sizes[e].resize(edges_[EdgeId(e)].at.size());
+      working_.sizes(edges_[EdgeId(e)].at, sizes[e]);
+    });
+    return sizes;
   }
 
   /// Beside the places where sizes are lowered already.
@@ -277,6 +302,7 @@ class BrepGridder {
       findings = find_crossings(model);
     }
     if (!findings.empty() && wanted_.forgo_fine_bends()) {
+      edge_sizes_.clear();
       has_failed_.assign(grids_.size(), true);
       return false;
     }
@@ -369,6 +395,8 @@ class BrepGridder {
   BoundarySizes lowered_;
   std::set<CornerId> long_sided_;  ///< sharp corners whose first sides are longer than sizes say
   Array<EdgeId, EdgePoints> edges_;
+  std::vector<std::vector<double>> edge_sizes_;  ///< by edge: at its points, when it was divided
+  std::set<CornerId> divided_long_sided_;        ///< long_sided_ then
   Array<FaceId, FaceGrid> grids_;
   std::vector<int> failures_;
   std::vector<bool> has_failed_;            ///< by face: in the last round

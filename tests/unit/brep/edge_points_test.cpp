@@ -135,7 +135,8 @@ TEST(EdgePoints, OfADegenerateEdgeThereIsOnePlace) {
   const WantedSize wanted(size, 0.7);
   Context context;
   std::size_t num_vertices = 0;
-  const Array<EdgeId, EdgePoints> points = divide_edges(sphere, wanted, {}, num_vertices, context);
+  Array<EdgeId, EdgePoints> points(sphere.edges.size());
+  divide_edges(sphere, wanted, {}, points, num_vertices, context);
   std::size_t degenerate = 0;
   for (std::size_t e = 0; e < points.size(); ++e) {
     const EdgePoints& made = points[EdgeId(e)];
