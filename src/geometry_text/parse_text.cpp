@@ -10,9 +10,9 @@
 #include <initializer_list>
 
 #include "base/nearest_name.hpp"
-#include "geometry/boundary_kinds.hpp"
 #include "base/toml_letters.hpp"
 #include "delfront/errors.hpp"
+#include "geometry/boundary_kinds.hpp"
 #include "geometry_text/fields.hpp"
 #include "io/source.hpp"
 
