@@ -73,11 +73,16 @@ class BrepGridder {
   bool grid_faces() {
     const StageTimer timer(context_, "surface");
     const Array<EdgeId, EdgePoints> before = edges_;
-    keep_sizes();
-    divide();
+    if (is_lengthening_) {
+      divide_anew([&](EdgeId e) { return is_divided_otherwise(e); });
+    } else {
+      keep_sizes();
+      divide();
+    }
     parallel_for(context_.threads, grids_.size(), [&](std::size_t f) {
       if (!takes_again(FaceId(f), before)) grid_face(FaceId(f));
     });
+    is_lengthening_ = false;
     return mend_faces();
   }
 
@@ -100,7 +105,7 @@ class BrepGridder {
 
   /// The last round's grid of a face, where neither its border nor the sizes at its points have changed.
   bool takes_again(FaceId f, const Array<EdgeId, EdgePoints>& before) {
-    if (sizes_[f.index()].empty()) return false;
+    if (!is_lengthening_ && sizes_[f.index()].empty()) return false;
     std::unordered_map<std::uint32_t, std::uint32_t> number;
     for (const auto& loop : brep_.faces[f].loops)
       for (const BrepUse& use : loop) {
@@ -109,7 +114,7 @@ class BrepGridder {
         for (std::size_t i = 0; i < was.vertex.size(); ++i) number[was.vertex[i]] = is.vertex[i];
       }
     FaceGrid& grid = grids_[f];
-    if (sizes_at(grid) != sizes_[f.index()]) return false;
+    if (!is_lengthening_ && sizes_at(grid) != sizes_[f.index()]) return false;
     for (FacePoint& p : grid.points)
       if (p.vertex != kNoVertex) p.vertex = number.at(p.vertex);
     return true;
@@ -133,42 +138,32 @@ class BrepGridder {
     if (report_.rounds == std::size_t(options_.most_rounds)) return false;
     const std::size_t before = long_sided_.size();
     for (const CornerId c : find_needles_in_corners(brep_, model, report_.entity, kNeedleDeg)) long_sided_.insert(c);
-    return long_sided_.size() > before;
+    is_lengthening_ = long_sided_.size() > before;
+    return is_lengthening_;
   }
 
   /// F3, twice: from sides that are shorter than asked for, sizes grow.
   void divide() {
+    const auto all = [](EdgeId) { return true; };
     working_.lower(lowered_, context_);
-    divide_again();
+    divide_anew(all);
     const BoundarySizes sizes = find_short_sides();
     if (sizes.points.size() == lowered_.points.size()) return;
     working_.lower(sizes, context_);
-    divide_again();
+    divide_anew(all);
   }
-
-  /// Edges with the same sizes at their points as before keep those.
-  void divide_again() {
+  template <class Which>
+  void divide_anew(const Which& which) {
     if (edges_.empty()) edges_ = Array<EdgeId, EdgePoints>(brep_.edges.size());
-    std::vector<std::vector<double>> sizes = edge_sizes();
     for (std::size_t e = 0; e < edges_.size(); ++e)
-      if (edge_sizes_.empty() || sizes[e] != edge_sizes_[e] || is_divided_otherwise(EdgeId(e)))
-        edges_[EdgeId(e)].t.clear();
+      if (which(EdgeId(e))) edges_[EdgeId(e)].t.clear();
     divide_edges(brep_, wanted_, long_sided_, edges_, num_vertices_, context_);
-    edge_sizes_ = edge_sizes();
     divided_long_sided_ = long_sided_;
   }
   bool is_divided_otherwise(EdgeId e) const {
     const auto& ends = brep_.edges[e].corners;
     return std::any_of(ends.begin(), ends.end(),
                        [&](CornerId c) { return long_sided_.contains(c) != divided_long_sided_.contains(c); });
-  }
-  std::vector<std::vector<double>> edge_sizes() {
-    std::vector<std::vector<double>> sizes(edges_.size());
-    parallel_for(context_.threads, sizes.size(), [&](std::size_t e) {
-      sizes[e].resize(edges_[EdgeId(e)].at.size());
-      working_.sizes(edges_[EdgeId(e)].at, sizes[e]);
-    });
-    return sizes;
   }
 
   /// Beside the places where sizes are lowered already.
@@ -302,7 +297,6 @@ class BrepGridder {
       findings = find_crossings(model);
     }
     if (!findings.empty() && wanted_.forgo_fine_bends()) {
-      edge_sizes_.clear();
       has_failed_.assign(grids_.size(), true);
       return false;
     }
@@ -393,10 +387,10 @@ class BrepGridder {
   WorkingSize working_;
   WantedSize wanted_;
   BoundarySizes lowered_;
-  std::set<CornerId> long_sided_;  ///< sharp corners whose first sides are longer than sizes say
+  std::set<CornerId> long_sided_;          ///< sharp corners whose first sides are longer than sizes say
+  std::set<CornerId> divided_long_sided_;  ///< the same, when edges were divided
+  bool is_lengthening_ = false;            ///< this round changes nothing but those sides
   Array<EdgeId, EdgePoints> edges_;
-  std::vector<std::vector<double>> edge_sizes_;  ///< by edge: at its points, when it was divided
-  std::set<CornerId> divided_long_sided_;        ///< long_sided_ then
   Array<FaceId, FaceGrid> grids_;
   std::vector<int> failures_;
   std::vector<bool> has_failed_;            ///< by face: in the last round
