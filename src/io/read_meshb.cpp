@@ -39,9 +39,10 @@ class GmfFile {
     while (cursor_.left() >= 4) {
       const std::size_t begin = cursor_.position();
       const auto keyword = cursor_.binary<std::int32_t>("a keyword");
-      if (keyword == gmf::kEnd) return;
+      if (keyword == gmf::kEnd && cursor_.left() < (version_ < 3 ? 4u : 8u)) return;
       const std::int64_t next = version_ < 3 ? cursor_.binary<std::int32_t>("the place of the next keyword")
                                              : cursor_.binary<std::int64_t>("the place of the next keyword");
+      if (keyword == gmf::kEnd) return;
       context_.check_limits();
       if (keyword == gmf::kDimension) {
         dimension_ = cursor_.binary<std::int32_t>("dimension");
@@ -91,6 +92,11 @@ class MeshbReader {
 
   Mesh read() {
     file_.for_each_keyword([&](std::int32_t keyword) { take(keyword); });
+    for (std::string_view rest = file_.cursor().bytes().substr(file_.cursor().position()); !rest.empty();) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      take_name(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
     const std::string& path = file_.cursor().path();
     if (mesh_.top_dimension() < 0) throw InputError(fmt::format("{}: the Medit file has no cells", path));
     for (const NamedNumber& named : names_) {
@@ -153,14 +159,17 @@ class MeshbReader {
     }
   }
 
-  void read_names() {
+  void take_name(std::string_view text) {
     constexpr std::string_view kMark = "#delfront ";
+    NamedNumber named;
+    if (text.starts_with(kMark) && parse_name_line(text.substr(kMark.size()), named)) names_.push_back(named);
+  }
+
+  void read_names() {
     const std::size_t n = file_.count("number of comments", 0, 0, gmf::kCommentLength);
     for (std::size_t i = 0; i < n; ++i) {
-      std::string_view text = file_.cursor().take_bytes(gmf::kCommentLength, "a comment");
-      text = text.substr(0, text.find('\0'));
-      NamedNumber named;
-      if (text.starts_with(kMark) && parse_name_line(text.substr(kMark.size()), named)) names_.push_back(named);
+      const std::string_view text = file_.cursor().take_bytes(gmf::kCommentLength, "a comment");
+      take_name(text.substr(0, text.find('\0')));
     }
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary Medit (GMF), little endian: version 2, and where its 4-byte places do not reach, 3. A group is the reference
-// "number in its dimension + 1"; its name and kind stand in a comment as in the .mesh that write_medit makes.
+// "number in its dimension + 1"; its name and kind stand behind the end in the words of the comments that write_medit
+// makes.
 #include <fmt/format.h>
 
 #include <limits>
@@ -49,26 +50,17 @@ class GmfWriter {
 };
 
 std::uint64_t bytes_of(const Mesh& mesh) {
-  std::uint64_t bytes = 1000 + mesh.points.size() * static_cast<std::uint64_t>(8 * mesh.dimension + 4) +
-                        mesh.groups.size() * gmf::kCommentLength;
+  std::uint64_t bytes = 1000 + mesh.points.size() * static_cast<std::uint64_t>(8 * mesh.dimension + 4);
   for (const CellBlock& block : mesh.blocks) bytes += 4 * (block.vertices.size() + block.size());
   return bytes;
 }
 
-void write_names(GmfWriter& gmf, Output& out, const Mesh& mesh, const std::vector<std::int32_t>& number,
+/// Behind the end, where other programs do not look: not all of them pass over the keyword of comments.
+void write_names(Output& out, const Mesh& mesh, const std::vector<std::int32_t>& number,
                  std::vector<std::string>& notes) {
   const std::vector<std::string> names = fit_names(mesh, NameRule::line, "Medit", notes);
-  if (names.empty()) return;
-  gmf.begin(gmf::kComments, 4 + names.size() * gmf::kCommentLength);
-  gmf.integer(static_cast<std::int64_t>(names.size()));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    std::string line = name_line(mesh.groups[GroupId(i)], number[i] + 1, names[i]);
-    if (line.size() >= gmf::kCommentLength)
-      notes.push_back(fmt::format("Medit: the name \"{}\" is cut to what a comment holds", names[i]));
-    line.resize(std::min(line.size(), gmf::kCommentLength - 1));
-    line.resize(gmf::kCommentLength, '\0');
-    out.text(line);
-  }
+  for (std::size_t i = 0; i < names.size(); ++i)
+    out.text(fmt::format("\n{}", name_line(mesh.groups[GroupId(i)], number[i] + 1, names[i])));
 }
 
 void write_cells(GmfWriter& gmf, const CellBlock& block, const std::vector<std::int32_t>& number) {
@@ -98,7 +90,6 @@ void write_meshb(const Mesh& mesh, Output& out, const WriteOptions&, Context& co
   GmfWriter gmf(out, bytes_of(mesh) < std::numeric_limits<std::int32_t>::max() ? 2 : 3);
   gmf.begin(gmf::kDimension, 4);
   gmf.integer(mesh.dimension);
-  write_names(gmf, out, mesh, number, notes);
   gmf.begin(gmf::kVertices, 4 + mesh.points.size() * static_cast<std::uint64_t>(8 * mesh.dimension + 4));
   gmf.integer(static_cast<std::int64_t>(mesh.points.size()));
   for (const Point& p : mesh.points) {
@@ -110,6 +101,7 @@ void write_meshb(const Mesh& mesh, Output& out, const WriteOptions&, Context& co
     if (block.size() > 0) write_cells(gmf, block, number);
   }
   gmf.end();
+  write_names(out, mesh, number, notes);
 }
 
 }  // namespace delfront

@@ -60,9 +60,11 @@ class Formats(unittest.TestCase):
         self.assertEqual(status, 0, f"{source} -> {target}: {text}")
         return text
 
-    def mixed(self):
-        mesh = meshio.Mesh(np.array(POINTS, dtype=float), [(t, np.array(c)) for t, c in CELLS])
-        mesh.cell_data["medit:ref"] = [np.full(len(c), i + 1) for i, (_, c) in enumerate(CELLS)]
+    def mixed(self, leave_out="", has_references=True):
+        cells = [(t, c) for t, c in CELLS if t != leave_out]
+        mesh = meshio.Mesh(np.array(POINTS, dtype=float), [(t, np.array(c)) for t, c in cells])
+        if has_references:
+            mesh.cell_data["medit:ref"] = [np.full(len(c), i + 1) for i, (_, c) in enumerate(cells)]
         return mesh
 
     def signed_volumes(self, mesh):
@@ -77,11 +79,13 @@ class Formats(unittest.TestCase):
             o = corners[:, 0]
             yield from np.einsum("ij,ij->i", np.cross(a - o, b - o), c - o)
 
-    def check_mixed(self, path, name):
-        mesh, found = counts(path)
+    def check_mixed(self, path, name, file_format=None, leave_out=""):
+        mesh, found = counts(path, file_format)
         for kind, number in VOLUMES.items():
+            if kind == leave_out:
+                continue
             self.assertEqual(found.get(kind), number, f"{name}: {kind}")
-        np.testing.assert_allclose(mesh.points, POINTS, atol=1e-12, err_msg=name)
+        np.testing.assert_allclose(mesh.points, POINTS, atol=1e-10, err_msg=name)
         self.assertTrue(all(v > 0 for v in self.signed_volumes(mesh)), f"{name}: a cell is turned over")
 
     def test_files_of_meshio_are_read(self):
@@ -90,24 +94,20 @@ class Formats(unittest.TestCase):
         for name, file_format in files.items():
             with self.subTest(name):
                 path = self.folder / name
-                mesh = self.mixed()
-                if file_format == "abaqus":  # which writes faces as shells
-                    mesh.cell_data = {}
-                meshio.write(path, mesh, file_format=file_format)
-                self.convert(path, self.folder / "back.vtu")
-                self.check_mixed(self.folder / "back.vtu", name)
+                # Its Abaqus has no pyramids, and its UGRID fails on references of two blocks.
+                leave_out = "pyramid" if file_format == "abaqus" else ""
+                meshio.write(path, self.mixed(leave_out, file_format in ("nastran", "medit")), file_format=file_format)
+                self.convert(path, self.folder / "back.msh")
+                self.check_mixed(self.folder / "back.msh", name, None, leave_out)
 
     def test_meshio_reads_ours(self):
-        meshio.write(self.folder / "a.mesh", self.mixed(), file_format="medit")
         for name, file_format in {"b.bdf": "nastran", "b.ugrid": "ugrid", "b.b8.ugrid": "ugrid", "b.lb8.ugrid": "ugrid",
                                   "b.meshb": "medit", "b.inp": "abaqus"}.items():
             with self.subTest(name):
+                leave_out = "pyramid" if file_format == "abaqus" else ""
+                meshio.write(self.folder / "a.mesh", self.mixed(leave_out), file_format="medit")
                 self.convert(self.folder / "a.mesh", self.folder / name)
-                mesh, found = counts(self.folder / name, file_format)
-                for kind, number in VOLUMES.items():
-                    self.assertEqual(found.get(kind), number, f"{name}: {kind}")
-                np.testing.assert_allclose(mesh.points, POINTS, atol=1e-10)
-                self.assertTrue(all(v > 0 for v in self.signed_volumes(mesh)), f"{name}: a cell is turned over")
+                self.check_mixed(self.folder / name, name, file_format, leave_out)
 
     def gmsh_box(self, extension):
         if not shutil.which("gmsh"):
@@ -126,21 +126,19 @@ class Formats(unittest.TestCase):
                 path = self.gmsh_box(extension)
                 if extension == "cgns" and "cgns" not in run(DELFRONT, "--help")[1]:
                     self.skipTest("built without the CGNS library")
-                self.convert(path, self.folder / "back.vtu")
-                mesh, found = counts(self.folder / "back.vtu")
+                self.convert(path, self.folder / "back.msh")
+                mesh, found = counts(self.folder / "back.msh")
                 self.assertEqual(found.get("tetra"), wanted["tetra"])
                 self.assertTrue(all(v > 0 for v in self.signed_volumes(mesh)))
 
     def test_gmsh_reads_ours(self):
         path = self.gmsh_box("msh")
         _, wanted = counts(path)
-        for name in ("b.bdf", "b.meshb"):
-            with self.subTest(name):
-                self.convert(path, self.folder / name)
-                status, text = run("gmsh", "-v", "2", self.folder / name, "-0", "-o", self.folder / "read.msh")
-                self.assertEqual(status, 0, text)
-                self.assertNotIn("Error", text)
-                self.assertEqual(counts(self.folder / "read.msh")[1].get("tetra"), wanted["tetra"], text)
+        self.convert(path, self.folder / "b.bdf")
+        status, text = run("gmsh", "-v", "2", self.folder / "b.bdf", "-0", "-o", self.folder / "read.msh")
+        self.assertEqual(status, 0, text)
+        self.assertNotIn("Error", text)
+        self.assertEqual(counts(self.folder / "read.msh")[1].get("tetra"), wanted["tetra"], text)
 
     def test_cgnscheck_finds_nothing(self):
         if not shutil.which("cgnscheck"):

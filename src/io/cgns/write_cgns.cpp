@@ -40,6 +40,9 @@ class CgnsWriter {
   void write() {
     const int space = mesh_.dimension;
     file_.check(cg_base_write(file_.number(), "Base", top_, space, &base_), "the base");
+    // A grid here has no unit that is known.
+    file_.check(cg_goto(file_.number(), base_, "end"), "the base");
+    file_.check(cg_dataclass_write(NormalizedByUnknownDimensional), "the data class");
     const cgsize_t sizes[3] = {static_cast<cgsize_t>(mesh_.points.size()),
                                static_cast<cgsize_t>(mesh_.num_cells_of_dimension(top_)), 0};
     write_families();
