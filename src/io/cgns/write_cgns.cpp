@@ -12,9 +12,11 @@
 #include "delfront/errors.hpp"
 #include "io/cells.hpp"
 #include "io/cgns/cgns_file.hpp"
+#include "io/cgns/same_bytes.hpp"
 #include "io/formats.hpp"
 #include "io/grid_parts.hpp"
 #include "io/names.hpp"
+#include "io/output.hpp"
 
 namespace delfront {
 
@@ -188,9 +190,11 @@ void write_cgns(const Mesh& mesh, const std::string& path, const std::string& sh
   note_left_out_fields(mesh, "CGNS", notes);
   if (mesh.top_dimension() == 3) note_left_out_curves(mesh, "CGNS", notes);
   const std::lock_guard<std::mutex> turn(cgns_turn());
-  CgnsFile file(path, CG_MODE_WRITE, shown_path);
+  const Replacement draft(path);  // never committed
+  CgnsFile file(draft.temporary(), CG_MODE_WRITE, shown_path);
   CgnsWriter(mesh, file, context, notes).write();
   file.close();
+  write_same_bytes(draft.temporary(), path, shown_path);
 }
 
 }  // namespace delfront
