@@ -63,6 +63,11 @@ class CgnsWriter {
       int coordinate = 0;
       file_.check(cg_coord_write(file_.number(), base_, zone_, RealDouble, names[k], values.data(), &coordinate),
                   "the coordinates");
+      constexpr double kIsLength[5] = {0, 1, 0, 0, 0};
+      file_.check(
+          cg_goto(file_.number(), base_, "Zone_t", zone_, "GridCoordinates_t", 1, "DataArray_t", coordinate, "end"),
+          "the coordinates");
+      file_.check(cg_exponents_write(RealDouble, kIsLength), "the coordinates");
     }
   }
 
