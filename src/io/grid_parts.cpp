@@ -44,13 +44,19 @@ void check_vertices(const Mesh& mesh, const std::string& path, std::size_t first
 void mark_inner_groups(Mesh& mesh) {
   const int top = mesh.dimension;
   std::unordered_map<FacetKey, int, FacetKeyHash> num_sides;
+  std::vector<bool> is_on(mesh.points.size(), false);  // most faces of cells have a corner that no stored face has
   for (const CellBlock& block : mesh.blocks)
     for (std::size_t cell = 0; dimension(block.type) == top - 1 && cell < block.size(); ++cell)
-      if (group_of(block, cell) >= 0) num_sides.emplace(facet_key(block[cell]), 0);
+      if (group_of(block, cell) >= 0) {
+        num_sides.emplace(facet_key(block[cell]), 0);
+        for (const VertexId v : block[cell]) is_on[v.index()] = true;
+      }
   if (num_sides.empty()) return;
   for (const CellBlock& block : mesh.blocks)
     for (std::size_t cell = 0; dimension(block.type) == top && cell < block.size(); ++cell)
       for_each_facet(block, cell, [&](std::span<const VertexId> corners) {
+        for (const VertexId v : corners)
+          if (!is_on[v.index()]) return;
         if (const auto found = num_sides.find(facet_key(corners)); found != num_sides.end()) ++found->second;
       });
   std::vector<bool> is_inner(mesh.groups.size(), true), has_faces(mesh.groups.size(), false);

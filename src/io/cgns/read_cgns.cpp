@@ -110,6 +110,11 @@ class CgnsReader {
       if (cg_goto(fn(), kBase, "Family_t", family, "end") == CG_OK)
         if (const std::string noted = descriptor(kKindMark); !noted.empty()) kind = noted;
       kind_of_family_[name.data()] = kind;
+      Name node{}, outer{};
+      int num_outer = 0;
+      if (cg_nfamily_names(fn(), kBase, family, &num_outer) == CG_OK && num_outer > 0 &&
+          cg_family_name_read(fn(), kBase, family, 1, node.data(), outer.data()) == CG_OK)
+        outer_family_[name.data()] = outer.data();
     }
   }
 
@@ -281,18 +286,26 @@ class CgnsReader {
           group = family.data();
           const auto known = kind_of_family_.find(group);
           if (kind.empty() && known != kind_of_family_.end()) kind = known->second;
+          if (const auto outer = outer_family_.find(group); outer != outer_family_.end()) group = outer->second;
         }
       }
       const bool is_range = set == PointRange || set == ElementRange;
       const bool on_vertices = location == Vertex && (set == PointRange || set == PointList);
       on_vertices ? take_vertices(numbers, is_range, vertices, patch(group, kind))
-                  : take_faces(numbers, is_range, patch(group, kind));
+                  : take_elements_of(numbers, is_range, group, kind);
     }
   }
 
-  void take_faces(const std::vector<cgsize_t>& numbers, bool is_range, GroupId group) {
+  /// Faces become the patch; cells, which some programs give conditions too, the region of that name.
+  void take_elements_of(const std::vector<cgsize_t>& numbers, bool is_range, const std::string& name,
+                        const std::string& kind) {
+    GroupId face_group, cell_group;
     const auto take = [&](Element& element) {
-      if (dimension(element.type) == cell_dimension_ - 1) element.group = group;
+      const int d = dimension(element.type);
+      if (d < cell_dimension_ - 1) return;
+      GroupId& group = d == cell_dimension_ ? cell_group : face_group;
+      if (!group.is_valid()) group = d == cell_dimension_ ? mesh_.add_group(d, name) : patch(name, kind);
+      element.group = group;
     };
     if (!is_range) {
       for (const cgsize_t number : numbers)
@@ -362,8 +375,8 @@ class CgnsReader {
   Context& context_;
   Mesh mesh_;
   int cell_dimension_ = 3;
-  std::map<std::string, std::string> kind_of_family_;
-  std::vector<Element> elements_;  // of the zone, by number
+  std::map<std::string, std::string> kind_of_family_, outer_family_;  // Gmsh puts entities into families of families
+  std::vector<Element> elements_;                                     // of the zone, by number
   std::vector<std::string> section_names_, region_of_section_;
   std::unordered_map<std::array<double, 3>, VertexId, PointHash> welded_;
 };
