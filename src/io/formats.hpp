@@ -33,11 +33,21 @@ Mesh read_vtu(std::string_view bytes, const std::string& path, Context& context)
 Mesh read_vtp(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_msh(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_medit(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_meshb(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_su2(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_pos(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_nastran(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_abaqus(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_fluent(std::string_view bytes, const std::string& path, Context& context);
+Mesh read_ugrid(std::string_view bytes, const std::string& path, Context& context);
+
+/// @brief FUN3D's .mapbc beside a UGRID: names and kinds of its surfaces, names of its volumes.
+void read_mapbc(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context);
+void write_mapbc(const Mesh& mesh, Output& out, std::vector<std::string>& notes);
 
 /// @brief Add the fields of a Medit solution to its mesh; a warning where the number of nodes is another.
 void read_sol(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context);
+void read_solb(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context);
 
 void write_stl(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_obj(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
@@ -47,7 +57,20 @@ void write_vtu(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<
 void write_vtp(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_msh(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_medit(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_meshb(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_su2(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_nastran(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_abaqus(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_fluent(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_ugrid(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_ugrid_b8(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_ugrid_lb8(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+
+/// @brief CGNS, where its library was there when this was built. Its files are read and written by name.
+Mesh read_cgns(const std::string& path, Context& context);
+/// @param shown_path  for messages; `path` is the temporary file
+void write_cgns(const Mesh& mesh, const std::string& path, const std::string& shown_path, const WriteOptions& options,
+                Context& context, std::vector<std::string>& notes);
 
 /// @brief The files of a polyMesh; the zones may be empty.
 struct FoamFiles {

@@ -14,6 +14,8 @@ namespace delfront {
 
 namespace {
 
+constexpr std::size_t kLongestCgns = 32;
+
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -25,6 +27,8 @@ char fit_character(char c, NameRule rule) {
       return c;
     case NameRule::quoted:
       return c == '"' ? '\'' : c;
+    case NameRule::cgns:
+      return c == '/' ? '_' : c;
     case NameRule::word:
       return std::string_view(" %=,;()\"'{}").find(c) == std::string_view::npos ? c : '_';
     case NameRule::foam_word:
@@ -36,6 +40,7 @@ char fit_character(char c, NameRule rule) {
 std::string fit_name(const std::string& name, NameRule rule, const char* role) {
   std::string fitted(trimmed(name));
   for (char& c : fitted) c = fit_character(c, rule);
+  if (rule == NameRule::cgns && fitted.size() > kLongestCgns) fitted.resize(kLongestCgns);
   fitted = std::string(trimmed(fitted));
   if (fitted.empty()) return role;
   if (rule == NameRule::foam_word && !is_letter(fitted[0]) && fitted[0] != '_')
@@ -60,8 +65,10 @@ std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* 
     if (is_settled[i]) continue;
     const Group& group = mesh.groups[GroupId(i)];
     const std::string base = fitted[i];
-    for (int number = 2; !taken.insert({group.dimension, fitted[i]}).second; ++number)
-      fitted[i] = fmt::format("{}_{}", base, number);
+    for (int number = 2; !taken.insert({group.dimension, fitted[i]}).second; ++number) {
+      const std::string end = fmt::format("_{}", number);
+      fitted[i] = (rule == NameRule::cgns ? base.substr(0, kLongestCgns - end.size()) : base) + end;
+    }
     const char* role = role_name(mesh, group.dimension);
     notes.push_back(group.name.empty()
                         ? fmt::format("{}: an unnamed {} is written as \"{}\"", format, role, fitted[i])

@@ -9,10 +9,11 @@ namespace delfront {
 
 /// @brief What a format lets a name contain.
 enum class NameRule {
-  line,      ///< no control characters, not empty (VTK XML, PLY, STL, OBJ, medit comments)
-  quoted,    ///< as line, and no double quotes (MSH)
-  word,      ///< as line, and no blanks nor any of %=,;()"'{} (SU2)
-  foam_word  ///< letters, digits, '_', '-', '.', beginning with a letter or '_' (OpenFOAM)
+  line,       ///< no control characters, not empty (VTK XML, PLY, STL, OBJ, medit comments)
+  quoted,     ///< as line, and no double quotes (MSH)
+  word,       ///< as line, and no blanks nor any of %=,;()"'{} (SU2)
+  foam_word,  ///< letters, digits, '_', '-', '.', beginning with a letter or '_' (OpenFOAM, Abaqus, Fluent)
+  cgns        ///< as line, without '/', and at most 32 characters (CGNS)
 };
 
 /// @brief The name of each group as the format holds it, unique among those of one dimension (numbered _2, _3, …).

@@ -15,6 +15,7 @@
 #include "io/cells.hpp"
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
+#include "io/grid_parts.hpp"
 #include "io/msh_types.hpp"
 #include "io/node_means.hpp"
 
@@ -376,6 +377,7 @@ class MshReader {
       const std::int64_t tag = has_physical[static_cast<std::size_t>(d)] ? cell.physical : cell.entity;
       add_cell(mesh_, cell.type, corners, tag != 0 && !is_no_group(d, tag) ? groups(d, tag) : GroupId());
     }
+    mark_inner_groups(mesh_);
     set_fields();
   }
 

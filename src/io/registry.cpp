@@ -16,13 +16,34 @@ namespace delfront {
 
 namespace {
 
+/// A second file of the same stem that holds what the first cannot.
+struct Beside {
+  const char* extension = nullptr;
+  void (*read)(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context) = nullptr;
+  void (*write)(const Mesh& mesh, Output& out, std::vector<std::string>& notes) = nullptr;
+};
+
 struct Format {
   const char* name;
   const char* title;
   std::vector<std::string> extensions;
   Reader read;   // null: cannot
   Writer write;  // null: cannot, or a folder
+  Beside beside = {};
+  // Of libraries that open files themselves; then `read` and `write` are null.
+  Mesh (*read_file)(const std::string& path, Context& context) = nullptr;
+  void (*write_file)(const Mesh& mesh, const std::string& path, const std::string& shown_path,
+                     const WriteOptions& options, Context& context, std::vector<std::string>& notes) = nullptr;
 };
+
+const Beside kMapbc = {".mapbc", read_mapbc, write_mapbc};
+
+/// Gmsh and Fluent share an extension; only Fluent's files begin with a parenthesis.
+Mesh read_any_msh(std::string_view bytes, const std::string& path, Context& context) {
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  const bool is_fluent = first != std::string_view::npos && bytes[first] == '(';
+  return is_fluent ? read_fluent(bytes, path, context) : read_msh(bytes, path, context);
+}
 
 constexpr const char* kFolderFormat = "openfoam";
 
@@ -36,25 +57,51 @@ const std::vector<Format>& table() {
       {"dat", "airfoil coordinates (Selig, Lednicer)", {".dat"}, read_dat, nullptr},
       {"vtu", "VTK XML unstructured grid", {".vtu"}, read_vtu, write_vtu},
       {"vtp", "VTK XML surface", {".vtp"}, read_vtp, write_vtp},
-      {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_msh, write_msh},
+      {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_any_msh, write_msh},
       {"pos", "Gmsh parsed views (ASCII)", {".pos"}, read_pos, nullptr},
       {"medit", "Medit, MMG", {".mesh"}, read_medit, write_medit},
+      {"meshb", "Medit, libMeshb (binary)", {".meshb"}, read_meshb, write_meshb},
       {"su2", "SU2", {".su2"}, read_su2, write_su2},
+#ifdef DELFRONT_HAS_CGNS
+      {"cgns", "CGNS", {".cgns"}, nullptr, nullptr, {}, read_cgns, write_cgns},
+#endif
+      {"ugrid", "AFLR UGRID (ASCII), names in .mapbc", {".ugrid"}, read_ugrid, write_ugrid, kMapbc},
+      {"ugrid-b8", "UGRID (binary, big endian)", {".b8.ugrid"}, read_ugrid, write_ugrid_b8, kMapbc},
+      {"ugrid-lb8", "UGRID (binary, little endian)", {".lb8.ugrid"}, read_ugrid, write_ugrid_lb8, kMapbc},
+      {"ugrid-other",
+       "UGRID (single precision, 8-byte integers)",
+       {".b4.ugrid", ".lb4.ugrid", ".b8l.ugrid", ".lb8l.ugrid"},
+       read_ugrid,
+       nullptr,
+       kMapbc},
+      {"fluent", "Ansys Fluent mesh; files .msh are told apart", {}, read_fluent, write_fluent},
+      {"nastran", "Nastran bulk data", {".bdf", ".nas"}, read_nastran, write_nastran},
+      {"abaqus", "Abaqus, CalculiX input", {".inp"}, read_abaqus, write_abaqus},
       {kFolderFormat, "OpenFOAM polyMesh in a case folder", {"/"}, nullptr, nullptr},
   };
   return kTable;
 }
 
 bool is_folder(const Format& format) { return std::string_view(format.name) == kFolderFormat; }
-bool can_read(const Format& format) { return format.read || is_folder(format); }
-bool can_write(const Format& format) { return format.write || is_folder(format); }
+bool can_read(const Format& format) { return format.read || format.read_file || is_folder(format); }
+bool can_write(const Format& format) { return format.write || format.write_file || is_folder(format); }
 
+/// With the dot, lower case; ".b8.ugrid" where a format has that.
 std::string extension_of(const std::string& path) {
   if (path.ends_with('/')) return "/";
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension)
+  std::string name = std::filesystem::path(path).filename().string();
+  for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return extension;
+  for (const Format& format : table())
+    for (const std::string& known : format.extensions)
+      if (std::count(known.begin(), known.end(), '.') > 1 && name.ends_with(known) && name != known) return known;
+  return std::filesystem::path(name).extension().string();
+}
+
+/// "wing.mapbc" for "wing.b8.ugrid".
+std::string path_beside(const std::string& path, const char* extension) {
+  const std::string own = extension_of(path);
+  return path.substr(0, path.size() - own.size()) + extension;
 }
 
 /// ".stl .obj …" of the formats that can be read, or written.
@@ -127,8 +174,35 @@ void read_solution_beside(const std::string& path, Mesh& mesh, Context& context)
     constexpr std::string_view kAscii = "MeshVersionFormatted";
     if (bytes.view().substr(0, 1000).find(kAscii) != std::string_view::npos || std::string_view(extension) == ".sol")
       return read_sol(bytes.view(), beside, mesh, context);
-    context.warn(fmt::format("{}: binary Medit solutions are not read; save it as ASCII .sol", beside));
+    return read_solb(bytes.view(), beside, mesh, context);
   }
+}
+
+void read_beside(const Beside& beside, const std::string& path, Mesh& mesh, Context& context) {
+  if (!beside.read) return;
+  const std::string second = path_beside(path, beside.extension);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(second, ignored)) return;
+  const FileBytes bytes(second);
+  beside.read(bytes.view(), second, mesh, context);
+}
+
+void write_by_library(const Format& format, const Mesh& mesh, const std::string& path, Context& context,
+                      const WriteOptions& options, std::vector<std::string>& notes) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored) &&
+      !std::filesystem::is_directory(path, ignored))
+    throw IoError(fmt::format("cannot write {}: {} goes to regular files only, and this is a device or a pipe", path,
+                              format.title));
+  Replacement replacement(path);
+  format.write_file(mesh, replacement.temporary(), path, options, context, notes);
+  replacement.commit();
+}
+
+/// A device or a pipe has nothing beside it.
+bool may_have_beside(const std::string& path) {
+  std::error_code ignored;
+  return !std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored);
 }
 
 }  // namespace
@@ -136,10 +210,12 @@ void read_solution_beside(const std::string& path, Mesh& mesh, Context& context)
 Mesh read_mesh(const std::string& path, Context& context, const std::string& format) {
   const Format& found = find_format(path, format, false);
   if (is_folder(found)) return read_openfoam(path, context);
+  if (found.read_file) return found.read_file(path, context);
   const FileBytes bytes(path);
   context.check_limits();
   Mesh mesh = found.read(bytes.view(), path, context);
-  if (found.read == read_medit) read_solution_beside(path, mesh, context);
+  if (found.read == read_medit || found.read == read_meshb) read_solution_beside(path, mesh, context);
+  read_beside(found.beside, path, mesh, context);
   return mesh;
 }
 
@@ -147,6 +223,10 @@ std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, C
                                     const WriteOptions& options, const std::string& format) {
   const Format& found = find_format(path, format, true);
   std::vector<std::string> notes;
+  if (found.write_file) {
+    write_by_library(found, mesh, path, context, options, notes);
+    return notes;
+  }
   if (!found.write) {
     write_openfoam(mesh, path, context, notes);
     return notes;
@@ -155,6 +235,16 @@ std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, C
   Output out(replacement.temporary(), path);
   found.write(mesh, out, options, context, notes);
   out.close();
+  if (!found.beside.write || !may_have_beside(path)) {
+    replacement.commit();
+    return notes;
+  }
+  const std::string second = path_beside(path, found.beside.extension);
+  Replacement replacement_beside(second);
+  Output out_beside(replacement_beside.temporary(), second);
+  found.beside.write(mesh, out_beside, notes);
+  out_beside.close();
+  replacement_beside.commit();
   replacement.commit();
   return notes;
 }

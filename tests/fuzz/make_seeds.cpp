@@ -65,13 +65,14 @@ void write_all(const Mesh& mesh, const std::string& root, const std::string& ste
   Context context;
   for (const FormatInfo& format : formats()) {
     if (!format.can_write || !format.can_read || format.name == "openfoam") continue;
-    const std::string folder = root + "/" + format.name;
+    const std::string folder = root + "/" + format.name.substr(0, format.name.find('-'));  // one reader, one folder
     std::filesystem::create_directories(folder);
     for (const WriteOptions& options : {WriteOptions{.binary = true, .version = "", .compress = false},
                                         WriteOptions{.binary = false, .version = "2.2", .compress = false},
                                         WriteOptions{.binary = true, .version = "2.2", .compress = true},
                                         WriteOptions{.binary = false, .version = "", .compress = false}}) {
-      const std::string name = stem + (options.binary ? "_b" : "_t") + (options.compress ? "_z" : "") + options.version;
+      const std::string name =
+          stem + "_" + format.name + (options.binary ? "_b" : "_t") + (options.compress ? "_z" : "") + options.version;
       try {
         write_mesh(mesh, folder + "/" + name, context, options, format.name);
       } catch (const std::exception&) {  // not every format holds every mesh
@@ -155,6 +156,24 @@ int main(int argc, char** argv) {
       "[[0, 0], [1, 0]]\n[[face]]\nsurface = \"s\"\n[[face]]\nname = \"f\"\nkind = \"wall\"\nsurface = \"s\"\n"
       "reversed = true\nloops = [[\"o\", {edge = \"-e\", uv = [[0, 0], [1, 1]]}]]\n[[shape]]\ntype = \"torus\"\n"
       "radius = 1\ntube = 0.5\n");
+  write_text(root, "mapbc", "3\n1 4000 wall\n2 6662 mirror\n3 5000 sky\n# volume 1 air\n");
+  write_text(root, "solb",
+             std::string("\x01\0\0\0\x02\0\0\0\x03\0\0\0\x14\0\0\0\x03\0\0\0>\0\0\0\x40\0\0\0\x03\0\0\0\x01\0\0\0\x01"
+                         "\0\0\0\0\0\0\0\0\0\xf0?\0\0\0\0\0\0\xf0?\0\0\0\0\0\0\xf0?6\0\0\0\0\0\0\0",
+                         72));
+  write_text(
+      root, "nastran",
+      "$HMNAME COMP                   1\"wall\"\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID    2               1.0+0   0.0     "
+      "0.0\nGRID*   3                               0.              1.\n*       0.\nGRID,4,,0.,0.,1.\nCTRIA3,1,1,1,2,"
+      "3\nCHEXA,2,2,1,2,3,4,1,2,+\n+,3,4\n$ANSA_NAME;2;PSOLID;~\n$air\nPSOLID  2       1\nENDDATA\n");
+  write_text(
+      root, "abaqus",
+      "*HEADING\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4, ELSET=a\n1, 1, 2,\n3, "
+      "4\n*ELSET, ELSET=b, GENERATE\n1, 1, 1\n*ELSET, ELSET=c\nb\n*SURFACE, NAME=s\n1, S1\nb, S2\n*NSET, NSET=n\n1\n");
+  write_text(root, "fluent",
+             "(0 \"c\")(2 2)(10 (0 1 3 0 2))(10 (1 1 3 1 2)(0 0 1 0 0 1))(12 (2 1 1 1 1))(13 (3 1 3 3 2)(1 2 0 1\n2 3 "
+             "0 1 3 1 0 "
+             "1))(45 (3 wall edge)())(45 (2 fluid air)())");
   write_text(root, "off", "COFF # c\n3 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n3 0 1 2 9\n");
   write_text(root, "stl",
              "SOLID a\r\nFACET NORMAL 0 0 1\r\nOUTER LOOP\r\nVERTEX 0 0 1E+000\r\nVERTEX +1 1.#QNAN 0\r\n");

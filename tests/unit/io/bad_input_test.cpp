@@ -22,7 +22,8 @@ std::string binary_stl(std::uint32_t claimed, const std::vector<float>& coordina
 
 TEST(BadInput, missing_empty_and_folder_are_said) {
   expect_mentions(message_of_reading<InputError>("no/such/file.stl"), {"no/such/file.stl", "No such file"});
-  for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.poly", "a.vtu", "a.vtp", "a.msh", "a.mesh", "a.su2"})
+  for (const char* name : {"a.stl", "a.obj", "a.ply", "a.off", "a.poly", "a.vtu", "a.vtp", "a.msh", "a.mesh", "a.su2",
+                           "a.meshb", "a.ugrid", "a.b8.ugrid", "a.bdf", "a.inp"})
     expect_mentions(message_of_reading<InputError>(write_text(name, "")), {name, "empty"});
   const auto folder = scratch_folder("folder.stl");
   expect_mentions(message_of_reading<InputError>(folder), {"folder.stl", "folder, not a file"});

@@ -66,7 +66,7 @@ TEST(Write, a_full_device_gives_an_error_in_every_format) {
   for (const FormatInfo& format : formats()) {
     if (!format.can_write || format.name == "openfoam") continue;
     expect_mentions(io_error([&] { write_mesh(two_boxes(), "/dev/full", context, {}, format.name); }),
-                    {"/dev/full", "No space left"});
+                    {"/dev/full", format.name == "cgns" ? "regular files" : "No space left"});
   }
 }
 
@@ -105,7 +105,11 @@ TEST(Write, links_are_followed_and_devices_not_replaced) {
 TEST(Write, the_same_mesh_gives_the_same_bytes) {
   Context context;
   const fs::path folder = scratch_folder("io_same");
-  for (const char* extension : {"vtu", "msh", "mesh", "su2", "stl"}) {
+  for (const char* extension :
+       {"vtu", "msh", "mesh", "su2", "stl", "meshb", "ugrid", "b8.ugrid", "bdf", "inp", "cgns"}) {
+    if (std::string_view(extension) == "cgns" &&
+        std::none_of(formats().begin(), formats().end(), [](const auto& f) { return f.name == "cgns"; }))
+      continue;
     for (const char* stem : {"a.", "b."}) write_mesh(two_boxes(), (folder / stem).string() + extension, context);
     EXPECT_EQ(contents((folder / "a.").string() + extension), contents((folder / "b.").string() + extension));
   }

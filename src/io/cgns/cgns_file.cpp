@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/cgns/cgns_file.hpp"
+
+#include <fmt/format.h>
+
+#include "delfront/errors.hpp"
+
+namespace delfront {
+
+namespace {
+
+struct TypeRow {
+  CellType type;
+  ElementType_t cgns;
+};
+constexpr TypeRow kTypes[] = {{CellType::vertex, NODE},   {CellType::line, BAR_2},          {CellType::triangle, TRI_3},
+                              {CellType::quad, QUAD_4},   {CellType::tetrahedron, TETRA_4}, {CellType::pyramid, PYRA_5},
+                              {CellType::prism, PENTA_6}, {CellType::hexahedron, HEXA_8}};
+
+struct KindRow {
+  BCType_t condition;
+  const char* kind;
+};
+/// The first of a kind is the one that is written.
+constexpr KindRow kKinds[] = {{BCWall, "wall"},
+                              {BCWallViscous, "wall"},
+                              {BCWallInviscid, "wall"},
+                              {BCWallViscousHeatFlux, "wall"},
+                              {BCWallViscousIsothermal, "wall"},
+                              {BCInflow, "inlet"},
+                              {BCInflowSubsonic, "inlet"},
+                              {BCInflowSupersonic, "inlet"},
+                              {BCTunnelInflow, "inlet"},
+                              {BCOutflow, "outlet"},
+                              {BCOutflowSubsonic, "outlet"},
+                              {BCOutflowSupersonic, "outlet"},
+                              {BCTunnelOutflow, "outlet"},
+                              {BCFarfield, "farfield"},
+                              {BCSymmetryPlane, "symmetry"},
+                              {BCSymmetryPolar, "symmetry"}};
+
+}  // namespace
+
+std::mutex& cgns_turn() {
+  static std::mutex turn;
+  return turn;
+}
+
+CgnsFile::CgnsFile(const std::string& path, int mode, std::string shown_path)
+    : is_writing_(mode == CG_MODE_WRITE), shown_path_(std::move(shown_path)) {
+  if (is_writing_) cg_set_file_type(CG_FILE_HDF5);
+  check(cg_open(path.c_str(), mode, &number_), "the file");
+}
+
+CgnsFile::~CgnsFile() {
+  if (number_ >= 0) cg_close(number_);
+}
+
+void CgnsFile::check(int status, const std::string& doing) const {
+  if (status == CG_OK) return;
+  if (is_writing_) throw IoError(fmt::format("cannot write {}: {}: {}", shown_path_, doing, cg_get_error()));
+  throw InputError(fmt::format("{}: {} cannot be read as CGNS: {}; the file is damaged or of another kind", shown_path_,
+                               doing, cg_get_error()));
+}
+
+void CgnsFile::close() {
+  const int number = number_;
+  number_ = -1;
+  check(cg_close(number), "the file");
+}
+
+std::optional<ElementType_t> cgns_type(CellType type) {
+  for (const TypeRow& row : kTypes)
+    if (row.type == type) return row.cgns;
+  return std::nullopt;
+}
+
+std::optional<CellType> type_from_cgns(ElementType_t type) {
+  for (const TypeRow& row : kTypes)
+    if (row.cgns == type) return row.type;
+  return std::nullopt;
+}
+
+BCType_t cgns_condition(const std::string& kind) {
+  for (const KindRow& row : kKinds)
+    if (kind == row.kind) return row.condition;
+  return BCTypeUserDefined;
+}
+
+std::string kind_from_cgns(BCType_t condition) {
+  for (const KindRow& row : kKinds)
+    if (condition == row.condition) return row.kind;
+  return "";
+}
+
+}  // namespace delfront

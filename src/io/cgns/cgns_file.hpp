@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cgnslib.h>
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "delfront/mesh.hpp"
+
+namespace delfront {
+
+/// @brief The turn of those who use the CGNS library, which keeps the place it is at in one variable.
+std::mutex& cgns_turn();
+
+/// @brief An open CGNS file; closed at the end whatever happens.
+class CgnsFile {
+ public:
+  /// @throws InputError (reading), IoError (writing)  with the library's reason
+  CgnsFile(const std::string& path, int mode, std::string shown_path);
+  ~CgnsFile();
+  CgnsFile(const CgnsFile&) = delete;
+  CgnsFile& operator=(const CgnsFile&) = delete;
+
+  int number() const { return number_; }
+  /// @brief Throws where a call of the library failed. @param doing  "the coordinates of zone 'x'", …
+  void check(int status, const std::string& doing) const;
+  /// @brief Close it now and check that.
+  void close();
+
+ private:
+  int number_ = -1;
+  bool is_writing_;
+  std::string shown_path_;
+};
+
+/// @brief CGNS's type of linear cells, whose vertices it orders as Mesh does; and back.
+std::optional<ElementType_t> cgns_type(CellType type);
+std::optional<CellType> type_from_cgns(ElementType_t type);
+
+/// @brief BC type of a boundary kind, BCTypeUserDefined where there is none; and back, "" for none.
+BCType_t cgns_condition(const std::string& kind);
+std::string kind_from_cgns(BCType_t condition);
+
+inline constexpr const char* kRegionMark = "Region";  ///< descriptor of a section: the region of its cells
+inline constexpr const char* kKindMark = "Kind";  ///< descriptor of a family: the kind, where the BC type cannot say it
+
+}  // namespace delfront

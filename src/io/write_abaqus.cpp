@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Abaqus and CalculiX input. Regions are element sets; patches are surfaces made of faces of cells, and node sets of
+// the same name. Grids without volume cells are shells. Kinds and two-sided patches are said in comments.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "delfront/errors.hpp"
+#include "io/abaqus.hpp"
+#include "io/cells.hpp"
+#include "io/formats.hpp"
+#include "io/grid_parts.hpp"
+#include "io/names.hpp"
+#include "io/output.hpp"
+
+namespace delfront {
+
+namespace {
+
+constexpr std::size_t kItemsOfLine = 16;
+
+/// The face of a cell that stands for a stored face.
+struct CellFace {
+  std::int64_t element = 0;  // from 1; 0: none yet
+  int face = 0;
+  bool is_same_turn = false;
+};
+
+class AbaqusWriter {
+ public:
+  AbaqusWriter(const Mesh& mesh, Output& out, Context& context, std::vector<std::string>& notes)
+      : mesh_(mesh), out_(out), context_(context), notes_(notes), top_(mesh.top_dimension()) {
+    names_ = fit_names(mesh, NameRule::foam_word, "Abaqus", notes);
+  }
+
+  void write() {
+    out_.text("*HEADING\n");
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const Group& group = mesh_.groups[GroupId(i)];
+      if (group.dimension == top_ || group.dimension == top_ - 1)
+        out_.text(fmt::format("**{}\n", name_line(group, static_cast<std::int64_t>(i) + 1, names_[i])));
+    }
+    write_nodes();
+    write_elements();
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      if (mesh_.groups[GroupId(i)].dimension == top_) write_set(GroupId(i));
+    find_faces();
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      if (mesh_.groups[GroupId(i)].dimension == top_ - 1) write_surface(static_cast<std::int64_t>(i), names_[i]);
+    write_surface(-1, "DELFRONT_UNNAMED");
+    if (num_loose_ > 0) notes_.push_back(fmt::format("Abaqus: {} faces that bound no cell are left out", num_loose_));
+  }
+
+ private:
+  const char* type_name(CellType type) const {
+    switch (type) {
+      case CellType::line:
+        return "T3D2";
+      case CellType::triangle:
+        return mesh_.dimension == 2 ? "CPS3" : "S3";
+      case CellType::quad:
+        return mesh_.dimension == 2 ? "CPS4" : "S4";
+      case CellType::tetrahedron:
+        return "C3D4";
+      case CellType::pyramid:
+        return "C3D5";
+      case CellType::prism:
+        return "C3D6";
+      default:
+        return "C3D8";
+    }
+  }
+
+  template <class Function>
+  void for_each_block(int d, Function&& take) const {
+    std::int64_t first = 1;
+    for (const CellBlock& block : mesh_.blocks) {
+      if (dimension(block.type) != d) continue;
+      take(block, first);
+      first += static_cast<std::int64_t>(block.size());
+    }
+  }
+
+  void write_nodes() {
+    out_.text("*NODE\n");
+    for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
+      if (i % 65536 == 0) context_.check_limits();
+      out_.integer(static_cast<std::int64_t>(i) + 1);
+      for (int k = 0; k < mesh_.dimension; ++k) {
+        out_.text(", ");
+        out_.real(mesh_.points[VertexId(i)][k]);
+      }
+      out_.character('\n');
+    }
+  }
+
+  void write_elements() {
+    for_each_block(top_, [&](const CellBlock& block, std::int64_t first) {
+      if (block.size() == 0) return;
+      context_.check_limits();
+      out_.text(fmt::format("*ELEMENT, TYPE={}\n", type_name(block.type)));
+      for (std::size_t cell = 0; cell < block.size(); ++cell) {
+        out_.integer(first + static_cast<std::int64_t>(cell));
+        for (const VertexId v : block[cell]) {
+          out_.text(", ");
+          out_.integer(static_cast<std::int64_t>(v.index()) + 1);
+        }
+        out_.character('\n');
+      }
+    });
+  }
+
+  /// Runs of numbers: groups mostly are.
+  void write_set(GroupId group) {
+    out_.text(fmt::format("*ELSET, ELSET={}, GENERATE\n", names_[group.index()]));
+    for_each_block(top_, [&](const CellBlock& block, std::int64_t first) {
+      const auto is_in = [&](std::size_t cell) {
+        return group_of(block, cell) == static_cast<std::int64_t>(group.index());
+      };
+      for (std::size_t cell = 0; cell < block.size(); ++cell) {
+        if (!is_in(cell)) continue;
+        const std::size_t begin = cell;
+        while (cell + 1 < block.size() && is_in(cell + 1)) ++cell;
+        out_.text(fmt::format("{}, {}, 1\n", first + static_cast<std::int64_t>(begin),
+                              first + static_cast<std::int64_t>(cell)));
+      }
+    });
+  }
+
+  /// For each stored face a cell that has it: best the one that it points out of.
+  void find_faces() {
+    std::unordered_map<FacetKey, std::pair<const CellBlock*, std::size_t>, FacetKeyHash> stored;
+    for (const CellBlock& block : mesh_.blocks)
+      for (std::size_t cell = 0; dimension(block.type) == top_ - 1 && top_ == mesh_.dimension && cell < block.size();
+           ++cell)
+        stored.emplace(facet_key(block[cell]), std::pair(&block, cell));
+    if (stored.empty()) return;
+    std::vector<VertexId> corners;
+    for_each_block(top_, [&](const CellBlock& block, std::int64_t first) {
+      const auto faces = abaqus_faces(block.type);
+      for (std::size_t cell = 0; cell < block.size(); ++cell)
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+          corners.clear();
+          for (const int k : faces[f])
+            if (k >= 0) corners.push_back(block[cell][static_cast<std::size_t>(k)]);
+          const FacetKey key = facet_key(corners);
+          const auto found = stored.find(key);
+          if (found == stored.end()) continue;
+          const std::span<const VertexId> face = (*found->second.first)[found->second.second];
+          const auto at =
+              static_cast<std::size_t>(std::find(corners.begin(), corners.end(), face[0]) - corners.begin());
+          const bool runs_along = corners[(at + 1) % corners.size()] == face[1] && (face.size() > 2 || at == 0);
+          const bool is_same_turn = face.size() == 2 ? runs_along : !runs_along;  // the manual's faces look inwards
+          CellFace& best = face_of_[key];
+          if (best.element == 0 || (is_same_turn && !best.is_same_turn))
+            best = {first + static_cast<std::int64_t>(cell), static_cast<int>(f) + 1, is_same_turn};
+        }
+    });
+  }
+
+  void write_surface(std::int64_t wanted, const std::string& name) {
+    std::vector<CellFace> faces;
+    std::vector<std::int64_t> nodes;
+    for (const CellBlock& block : mesh_.blocks)
+      for (std::size_t cell = 0; dimension(block.type) == top_ - 1 && cell < block.size(); ++cell) {
+        if (group_of(block, cell) != wanted) continue;
+        const auto found = face_of_.find(facet_key(block[cell]));
+        if (found == face_of_.end()) {
+          ++num_loose_;
+          continue;
+        }
+        faces.push_back(found->second);
+        for (const VertexId v : block[cell]) nodes.push_back(static_cast<std::int64_t>(v.index()) + 1);
+      }
+    if (faces.empty() && (wanted < 0 || top_ != mesh_.dimension)) return;
+    if (wanted < 0)
+      notes_.push_back(fmt::format("Abaqus: {} faces without a patch are in the surface {}", faces.size(), name));
+    out_.text(fmt::format("*SURFACE, NAME={}, TYPE=ELEMENT\n", name));
+    for (const CellFace& face : faces) out_.text(fmt::format("{}, S{}\n", face.element, face.face));
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    if (nodes.empty()) return;
+    out_.text(fmt::format("*NSET, NSET={}\n", name));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      out_.integer(nodes[i]);
+      out_.text(i + 1 == nodes.size() || (i + 1) % kItemsOfLine == 0 ? "\n" : ", ");
+    }
+  }
+
+  const Mesh& mesh_;
+  Output& out_;
+  Context& context_;
+  std::vector<std::string>& notes_;
+  int top_;
+  std::vector<std::string> names_;
+  std::unordered_map<FacetKey, CellFace, FacetKeyHash> face_of_;
+  std::size_t num_loose_ = 0;
+};
+
+}  // namespace
+
+void write_abaqus(const Mesh& mesh, Output& out, const WriteOptions&, Context& context,
+                  std::vector<std::string>& notes) {
+  refuse_general_cells(mesh, "Abaqus");
+  note_left_out_fields(mesh, "Abaqus", notes);
+  note_left_out_curves(mesh, "Abaqus", notes);
+  AbaqusWriter(mesh, out, context, notes).write();
+}
+
+}  // namespace delfront

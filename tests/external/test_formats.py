@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Files of other programs go in, and other programs take ours: meshio, Gmsh, cgnscheck, OpenFOAM.
+
+usage: test_formats.py DELFRONT [unittest arguments]; what needs a program that is missing is skipped by name.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+DELFRONT = sys.argv.pop(1)
+
+try:
+    import meshio
+    import numpy as np
+except ImportError:
+    meshio = None
+
+GEO = """
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 1, 0.5, 0.25};
+Physical Volume("air") = {1};
+Physical Surface("left") = {1};
+Physical Surface("rest") = {2, 3, 4, 5, 6};
+Mesh.MeshSizeMax = 0.2;
+"""
+
+# A hexahedron, a prism beside it and a pyramid on it, faces of two references.
+POINTS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1],
+          [2, 0.5, 0], [2, 0.5, 1], [0.5, 0.5, 1.7]]
+CELLS = [("quad", [[0, 3, 2, 1], [0, 4, 7, 3]]), ("triangle", [[1, 2, 8], [4, 5, 10]]),
+         ("hexahedron", [[0, 1, 2, 3, 4, 5, 6, 7]]), ("wedge", [[1, 8, 2, 5, 9, 6]]), ("pyramid", [[4, 5, 6, 7, 10]])]
+VOLUMES = {"hexahedron": 1, "wedge": 1, "pyramid": 1}
+
+
+def run(*command, cwd=None):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=300, cwd=cwd)
+    return done.returncode, done.stdout + done.stderr
+
+
+def counts(path, file_format=None):
+    mesh = meshio.read(path, file_format=file_format) if file_format else meshio.read(path)
+    found = {}
+    for block in mesh.cells:
+        found[block.type] = found.get(block.type, 0) + len(block.data)
+    return mesh, found
+
+
+@unittest.skipUnless(meshio, "meshio is not installed (Debian python3-meshio)")
+class Formats(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def convert(self, source, target, *more):
+        status, text = run(DELFRONT, "convert", source, target, *more)
+        self.assertEqual(status, 0, f"{source} -> {target}: {text}")
+        return text
+
+    def mixed(self, leave_out="", has_references=True):
+        cells = [(t, c) for t, c in CELLS if t != leave_out]
+        mesh = meshio.Mesh(np.array(POINTS, dtype=float), [(t, np.array(c)) for t, c in cells])
+        if has_references:
+            mesh.cell_data["medit:ref"] = [np.full(len(c), i + 1) for i, (_, c) in enumerate(cells)]
+        return mesh
+
+    def signed_volumes(self, mesh):
+        for block in mesh.cells:
+            corners = mesh.points[block.data]
+            if block.type in ("hexahedron", "pyramid"):
+                a, b, c = corners[:, 1], corners[:, 3], corners[:, 4]
+            elif block.type in ("tetra", "wedge"):
+                a, b, c = corners[:, 1], corners[:, 2], corners[:, 3]
+            else:
+                continue
+            o = corners[:, 0]
+            yield from np.einsum("ij,ij->i", np.cross(a - o, b - o), c - o)
+
+    def check_mixed(self, path, name, file_format=None, leave_out=""):
+        mesh, found = counts(path, file_format)
+        for kind, number in VOLUMES.items():
+            if kind == leave_out:
+                continue
+            self.assertEqual(found.get(kind), number, f"{name}: {kind}")
+        np.testing.assert_allclose(mesh.points, POINTS, atol=1e-10, err_msg=name)
+        self.assertTrue(all(v > 0 for v in self.signed_volumes(mesh)), f"{name}: a cell is turned over")
+
+    def test_files_of_meshio_are_read(self):
+        files = {"a.bdf": "nastran", "a.inp": "abaqus", "a.ugrid": "ugrid", "a.b8.ugrid": "ugrid", "a.lb8.ugrid": "ugrid",
+                 "a.lb4.ugrid": "ugrid", "a.meshb": "medit"}
+        for name, file_format in files.items():
+            with self.subTest(name):
+                path = self.folder / name
+                # Its Abaqus has no pyramids, and its UGRID fails on references of two blocks.
+                leave_out = "pyramid" if file_format == "abaqus" else ""
+                meshio.write(path, self.mixed(leave_out, file_format in ("nastran", "medit")), file_format=file_format)
+                self.convert(path, self.folder / "back.msh")
+                self.check_mixed(self.folder / "back.msh", name, None, leave_out)
+
+    def test_meshio_reads_ours(self):
+        for name, file_format in {"b.bdf": "nastran", "b.ugrid": "ugrid", "b.b8.ugrid": "ugrid", "b.lb8.ugrid": "ugrid",
+                                  "b.meshb": "medit", "b.inp": "abaqus"}.items():
+            with self.subTest(name):
+                leave_out = "pyramid" if file_format == "abaqus" else ""
+                meshio.write(self.folder / "a.mesh", self.mixed(leave_out), file_format="medit")
+                self.convert(self.folder / "a.mesh", self.folder / name)
+                self.check_mixed(self.folder / name, name, file_format, leave_out)
+
+    def gmsh_box(self, extension, like=None):
+        """A box by the program that writes the type `like`, which must be one for grids that are compared."""
+        # Debian's writes no CGNS, the one of PyPI (scripts/setup --peers) does.
+        peers = pathlib.Path(os.environ.get("DELFRONT_PEERS") or pathlib.Path(__file__).parents[2] / "build" / "peers")
+        own = peers / "venv" / "bin" / "gmsh"
+        program = [own.parent / "python3", own] if "cgns" in (extension, like) and own.exists() else [shutil.which("gmsh")]
+        if not program[0]:
+            self.skipTest("gmsh is not installed (scripts/setup --peers)")
+        (self.folder / "box.geo").write_text(GEO)
+        path = self.folder / f"box.{extension}"
+        status, text = run(*program, "-3", "-v", "1", self.folder / "box.geo", "-o", path)
+        if status != 0 or not path.exists():
+            self.skipTest(f"this gmsh writes no {extension}: {text[-200:]}")
+        return path
+
+    def test_files_of_gmsh_are_read(self):
+        for extension in ("bdf", "inp", "mesh", "cgns"):
+            with self.subTest(extension):
+                path = self.gmsh_box(extension)
+                if extension == "cgns" and "cgns" not in run(DELFRONT, "--help")[1]:
+                    self.skipTest("built without the CGNS library")
+                _, wanted = counts(self.gmsh_box("msh", like=extension))
+                self.convert(path, self.folder / "back.msh")
+                mesh, found = counts(self.folder / "back.msh")
+                self.assertEqual(found.get("tetra"), wanted["tetra"])
+                self.assertTrue(all(v > 0 for v in self.signed_volumes(mesh)))
+                if extension in ("inp", "cgns"):  # the others of its formats hold no names
+                    self.assertLessEqual({"air", "left", "rest"}, set(mesh.field_data))
+
+    def test_gmsh_reads_ours(self):
+        path = self.gmsh_box("msh")
+        _, wanted = counts(path)
+        self.convert(path, self.folder / "b.bdf")
+        status, text = run("gmsh", "-v", "2", self.folder / "b.bdf", "-0", "-o", self.folder / "read.msh")
+        self.assertEqual(status, 0, text)
+        self.assertNotIn("Error", text)
+        self.assertEqual(counts(self.folder / "read.msh")[1].get("tetra"), wanted["tetra"], text)
+
+    def test_cgnscheck_finds_nothing(self):
+        if not shutil.which("cgnscheck"):
+            self.skipTest("cgnscheck is not installed (Debian cgns-convert)")
+        if "cgns" not in run(DELFRONT, "--help")[1]:
+            self.skipTest("built without the CGNS library")
+        meshio.write(self.folder / "a.mesh", self.mixed(), file_format="medit")
+        for source in (self.folder / "a.mesh", self.gmsh_box("msh")):
+            self.convert(source, self.folder / "a.cgns")
+            status, text = run("cgnscheck", "-w3", self.folder / "a.cgns")
+            self.assertEqual(status, 0, text)
+            for word in ("ERROR", "WARNING"):
+                self.assertNotIn(word, text)
+
+    def test_docs_list_the_formats_that_there_are(self):
+        page = (pathlib.Path(__file__).parents[2] / "docs" / "formats.md").read_text(encoding="utf-8")
+        listed = run(DELFRONT, "--help")[1].split("File formats, by extension:\n")[1].split("\n  CAD ")[0]
+        for line in listed.splitlines():
+            name = line.split()[0]
+            self.assertRegex(page, rf"\| `{name}`", f"docs/formats.md has no row for {name}")
+
+    def test_openfoam_takes_our_fluent_file(self):
+        if not shutil.which("fluent3DMeshToFoam") or not shutil.which("checkMesh"):
+            self.skipTest("fluent3DMeshToFoam is not installed (Debian openfoam)")
+        path = self.gmsh_box("msh")
+        case = self.folder / "case"
+        (case / "system").mkdir(parents=True)
+        head = "FoamFile { version 2.0; format ascii; class dictionary; object %s; }\n"
+        (case / "system" / "controlDict").write_text(
+            head % "controlDict" + "application none; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; "
+            "writeControl timeStep; writeInterval 1; writeFormat ascii; writePrecision 12;\n")
+        (case / "system" / "fvSchemes").write_text(head % "fvSchemes" + "ddtSchemes {} gradSchemes {} divSchemes {} "
+                                                   "laplacianSchemes {} interpolationSchemes {} snGradSchemes {}\n")
+        (case / "system" / "fvSolution").write_text(head % "fvSolution")
+        self.convert(path, case / "box.msh", "--format", "fluent")
+        environment = ["env", "WM_PROJECT_DIR=/usr/share/openfoam"]
+        status, text = run(*environment, "fluent3DMeshToFoam", "box.msh", cwd=case)
+        self.assertEqual(status, 0, text[-2000:])
+        status, text = run(*environment, "checkMesh", cwd=case)
+        self.assertIn("Mesh OK.", text)
+        _, wanted = counts(path)
+        self.assertRegex(text, rf"tetrahedra:\s+{wanted['tetra']}\b")
+        for name in ("left", "rest"):
+            self.assertIn(name, text)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], "-v"] + sys.argv[1:])
