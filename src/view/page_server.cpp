@@ -45,7 +45,8 @@ Response answer_request(const Served& served, const Request& request) {
   const std::string_view path = slash == std::string_view::npos ? "?" : target.substr(slash + 1);
   if (path.empty()) return found(std::make_shared<const std::string>(served.page), "text/html; charset=utf-8");
   if (path == "grid") return found(served.grid, "application/octet-stream");
-  if (path == "progress") return found(served.progress, "application/json");
+  if (path == "progress")
+    return found(served.progress ? served.progress : std::make_shared<const std::string>("null"), "application/json");
   return {404, "text/plain; charset=utf-8", nullptr};
 }
 

@@ -18,7 +18,7 @@ struct Served {
   int port = 0;
   std::string_view page;
   std::shared_ptr<const std::string> grid;      ///< null: none yet (404)
-  std::shared_ptr<const std::string> progress;  ///< null: no job (404)
+  std::shared_ptr<const std::string> progress;  ///< null: no job, and so is the answer
 };
 
 /// @return 403 for another Host (a page of another site that has its name point here) or token, 404 for other paths

@@ -3,6 +3,7 @@
 """delfront view: what it refuses, what it writes, and who can reach what it serves."""
 import http.client
 import os
+import pathlib
 import re
 import signal
 import socket
@@ -18,7 +19,7 @@ def proc_listeners(port):
     found = []
     for name in ("/proc/net/tcp", "/proc/net/tcp6"):
         try:
-            lines = open(name).read().splitlines()[1:]
+            lines = pathlib.Path(name).read_text().splitlines()[1:]
         except OSError:
             continue
         for line in lines:

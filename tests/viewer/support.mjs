@@ -29,9 +29,11 @@ export async function openBrowser() {
   return browser;
 }
 
-/** Serve a file until `end`. */
+const servers = [];
+/** Serve a file until `end`, or until all ends. */
 export async function serve(...words) {
   const child = spawn(DELFRONT, ["view", ...words, "--no-browser"], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
+  servers.push(child);
   let said = "";
   child.stderr.on("data", (text) => (said += text));
   const url = await new Promise((resolve, reject) => {
@@ -60,9 +62,17 @@ export async function open(url, { offline = false, ready = true } = {}) {
   return page;
 }
 
-/** Wait for drawing to come to rest, then keep a picture. */
+const isDrawn = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+/** What is drawn, without panel and mouse. */
+export async function picture(page) {
+  await isDrawn(page);
+  return page.evaluate(() => document.getElementById("canvas").toDataURL());
+}
+
+/** Keep a picture of all of the window, to look at. */
 export async function shot(page, name) {
-  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await isDrawn(page);
   return page.screenshot({ path: path.join(shots, `${name}.png`) });
 }
 
@@ -78,6 +88,7 @@ export async function fetchGrid(url) {
 }
 
 export async function endAll() {
+  for (const child of servers) child.kill("SIGKILL");
   await browser?.close();
   fs.rmSync(folder, { recursive: true, force: true });
 }

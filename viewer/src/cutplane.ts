@@ -61,8 +61,7 @@ export class CutPlane {
 
   plane(): Plane | null {
     if (!this.isOn) return null;
-    const sign = this.isFlipped ? -1 : 1, n = this.normal;
-    return { normal: [sign * n.x, sign * n.y, sign * n.z], offset: sign * this.offset() };
+    return { normal: this.normal.toArray(), offset: this.offset(), isFlipped: this.isFlipped };
   }
 
   private middle(): THREE.Vector3 {

@@ -16,9 +16,9 @@ export function showInfo(view: View, picked: Picked): void {
   const row = (name: string, value: string) => table.append(el("tr", {}, el("th", {}, name), el("td", {}, value)));
   const place = (p: THREE.Vector3 | number[]) => {
     const values = Array.isArray(p) ? p : p.toArray();
-    return "(" + values.slice(0, grid.dimension).map((v, k) => number(v + grid.centre[k]!, 6)).join(", ") + ")";
+    return "(" + values.slice(0, grid.dimension).map((v, k) => number(v + grid.centre[k]!, 5)).join(", ") + ")";
   };
-  row("place", place(picked.at));
+  if (picked.at) row("place", place(picked.at));
   if (picked.face !== null && grid.top_dimension === 3) {
     const face = blockOf(grid, 2, picked.face);
     row("surface", grid.groups[face.groups[picked.face - face.first]!]?.name ?? "(no name)");

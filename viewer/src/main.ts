@@ -165,7 +165,7 @@ class Page {
     view.bins = new Set();
     const { centre, radius } = view.centreOf(cell);
     this.stage.fit(centre, 5 * radius);
-    showInfo(view, { cell, at: centre, face: null });
+    showInfo(view, { cell, at: null, face: null });
     view.mark(cell);
     await view.select(kept);
   }

@@ -159,7 +159,7 @@ export class Panel {
     this.bars.classList.toggle("chosen", bins.size > 0);
     const text = this.qualityPart.querySelector("#selected-count") as HTMLElement;
     text.dataset.selected = String(numSelected);
-    text.textContent = numSelected ? `${count(numSelected)} cells selected (Esc: none)` : "click bars to select cells";
+    text.textContent = numSelected ? `${count(numSelected)} ${numSelected === 1 ? "cell" : "cells"} selected (Esc: none)` : "click bars to select cells";
   }
 
   private drawLegend(): void {

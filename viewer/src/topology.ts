@@ -57,7 +57,8 @@ export class Triangles {
 
 export interface Plane {
   normal: [number, number, number];
-  offset: number; // cells with normal . centre <= offset are kept
+  offset: number; // cells with normal . centre <= offset are kept …
+  isFlipped: boolean; // … or just all others
 }
 
 export interface CutResult {
@@ -229,7 +230,7 @@ export class Topology {
   private isBehind(plane: Plane | null, cell: number): boolean {
     if (!plane) return true;
     const [x, y, z] = plane.normal, c = this.centres;
-    return x * c[3 * cell]! + y * c[3 * cell + 1]! + z * c[3 * cell + 2]! <= plane.offset;
+    return x * c[3 * cell]! + y * c[3 * cell + 1]! + z * c[3 * cell + 2]! <= plane.offset !== plane.isFlipped;
   }
 
   /** Whole cells behind the plane, without those of hidden regions. */

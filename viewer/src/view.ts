@@ -28,7 +28,7 @@ export interface Entry {
 
 export interface Picked {
   cell: number; // of the highest dimension; NONE where a face has none
-  at: THREE.Vector3;
+  at: THREE.Vector3 | null; // where it was clicked
   face: number | null; // a stored face
 }
 

@@ -42,7 +42,8 @@ TEST_F(AnswerRequest, serves_the_page_and_the_grid) {
   EXPECT_EQ(*response_.body, "page");
   EXPECT_EQ(ask("/" + token_ + "/grid", "localhost:4000"), 200);
   EXPECT_EQ(*response_.body, "grid");
-  EXPECT_EQ(ask("/" + token_ + "/progress"), 404);  // there is no job
+  EXPECT_EQ(ask("/" + token_ + "/progress"), 200);
+  EXPECT_EQ(*response_.body, "null");  // there is no job
 }
 
 TEST_F(AnswerRequest, without_the_token_all_is_forbidden) {
