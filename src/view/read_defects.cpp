@@ -62,7 +62,10 @@ class DefectReader {
       }
     std::vector<Finding> result;
     for (auto& [index, it] : findings) {
-      it.count = it.places.empty() ? it.outlines.size() : it.places.size();
+      // the file does not say how many: a hole is one place, but as many edges as it has
+      const auto num_edges = static_cast<std::size_t>(std::count_if(
+          it.outlines.begin(), it.outlines.end(), [](const Outline& o) { return o.corners.size() == 2; }));
+      it.count = std::max({it.places.size(), num_edges, std::size_t{1}});
       result.push_back(std::move(it));
     }
     return result;
