@@ -9,11 +9,8 @@ try {
   await page.waitForTimeout(3000);
   await shot(page, "viewer_cut");
   await page.selectOption("#colour-by", "min_dihedral");
-  await page.keyboard.press("c");
-  await page.waitForTimeout(3000);
-  for (const bin of (await page.$$eval(".bar", (bars) => bars.filter((b) => Number(b.dataset.count)).slice(0, 4).map((b) => b.dataset.bin))))
-    await page.click(`.bar[data-bin="${bin}"]`);
-  await page.waitForTimeout(3000);
+  await page.mouse.click(560, 150);
+  await page.waitForSelector("#info:not([hidden])");
   await shot(page, "viewer_quality");
 } finally {
   server.end();
