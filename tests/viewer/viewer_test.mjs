@@ -102,6 +102,18 @@ test("faces of a cut belong to the cells that are kept", async () => {
   await page.waitForSelector("#info:not([hidden])");
   assert.match(await page.textContent("#info"), /typetetrahedron/);
   assert.doesNotMatch(await page.textContent("#info"), /surface/);
+  const { header, array } = await fetchGrid(server.url);
+  const tets = header.blocks.find((b) => b.type === "tetrahedron"), points = array(header.points), vertices = array(tets.vertices);
+  for (let x = -300; x <= 300; x += 60) {
+    await page.mouse.click(CENTRE.x + x, CENTRE.y - 200);
+    const cell = Number(await page.getAttribute("#info", "data-cell"));
+    const place = (await page.textContent("#info")).match(/place\(([^)]*)\)/)[1].split(", ").map(Number);
+    const corners = [...vertices.subarray(4 * cell, 4 * cell + 4)].map((v) => [0, 1, 2].map((k) => points[3 * v + k] + header.centre[k]));
+    for (const k of [0, 1, 2]) {
+      const values = corners.map((p) => p[k]), slack = 0.03; // a pixel
+      assert.ok(place[k] > Math.min(...values) - slack && place[k] < Math.max(...values) + slack, `${place} is at cell ${cell}`);
+    }
+  }
   await page.keyboard.press("Escape");
   await page.keyboard.press("c");
 });

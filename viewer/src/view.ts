@@ -339,21 +339,23 @@ export class View {
     const hit = this.stage.pick(x, y);
     if (!hit) return null;
     const layer = [this.surface, this.cutLayer, this.selection][hit.layer - 1]!;
-    const at = this.pointOn(layer, hit.face, this.stage.ray(x, y));
+    const at = this.pointOn(layer, hit.face, this.stage.ray(x + 0.5, y + 0.5)); // the middle of the pixel
     if (hit.layer === SURFACE) return { cell: this.ownerOf(hit.face), at, face: hit.face };
     return { cell: (hit.layer === CUT ? this.cutCells : this.selectionCells)[hit.face]!, at, face: null };
   }
 
-  private pointOn(layer: FaceLayer, face: number, ray: THREE.Ray): THREE.Vector3 {
+  private pointOn(layer: FaceLayer, face: number, ray: THREE.Ray): THREE.Vector3 | null {
     const corner = (v: number) => new THREE.Vector3().fromArray(this.grid.points, 3 * v);
     const t = layer.triangles;
+    let beside: THREE.Vector3 | null = null; // the pixel may be seen of a face, but its middle miss it
     for (let k = 0; k < t.length; k += 4) {
       if ((t[k + 3]! & 0x1fffffff) !== face) continue;
       const [a, b, c] = [corner(t[k]!), corner(t[k + 1]!), corner(t[k + 2]!)];
       const at = ray.intersectTriangle(a, b, c, false, new THREE.Vector3());
       if (at) return at;
+      beside ??= ray.intersectPlane(new THREE.Plane().setFromCoplanarPoints(a, b, c), new THREE.Vector3());
     }
-    return ray.origin.clone();
+    return beside;
   }
 
   setWireframe(isOn: boolean): void {
