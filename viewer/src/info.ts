@@ -13,7 +13,8 @@ export function hideInfo(): void {
 export function showInfo(view: View, picked: Picked): void {
   const { grid } = view, box = byId("info");
   const table = el("table");
-  const row = (name: string, value: string) => table.append(el("tr", {}, el("th", {}, name), el("td", {}, value)));
+  const measures = el("table"); // of its own: long names, short values
+  const row = (name: string, value: string, into = table) => into.append(el("tr", {}, el("th", {}, name), el("td", {}, value)));
   const place = (p: THREE.Vector3 | number[]) => {
     const values = Array.isArray(p) ? p : p.toArray();
     return "(" + values.slice(0, grid.dimension).map((v, k) => number(v + grid.centre[k]!, 5)).join(", ") + ")";
@@ -33,12 +34,12 @@ export function showInfo(view: View, picked: Picked): void {
     row("centre", place(view.centreOf(picked.cell).centre));
     for (const column of view.columns) {
       const value = column.ofCells?.[picked.cell];
-      if (value !== undefined && !Number.isNaN(value)) row(column.title, number(unscaled(column, value)) + column.unit);
+      if (value !== undefined && !Number.isNaN(value)) row(column.title, number(unscaled(column, value)) + column.unit, measures);
     }
     const corners = cornersOf(block, index).map((v) =>
       el("tr", {}, el("th", {}, String(v)), el("td", {}, place([...grid.points.subarray(3 * v, 3 * v + 3)]))));
     const points = el("details", {}, el("summary", {}, `${corners.length} points`), el("table", {}, ...corners));
-    box.replaceChildren(el("h2", {}, `cell ${picked.cell}`), table, points);
+    box.replaceChildren(el("h2", {}, `cell ${picked.cell}`), table, measures, points);
   } else box.replaceChildren(el("h2", {}, "face"), table);
   box.prepend(el("button", { class: "close", title: "close (Esc)", click: () => { hideInfo(); view.mark(NONE); } }, "×"));
   box.hidden = false;
