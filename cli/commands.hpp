@@ -43,6 +43,7 @@ std::unique_ptr<Command> make_check_command(CLI::App& app);
 std::unique_ptr<Command> make_info_command(CLI::App& app);
 std::unique_ptr<Command> make_convert_command(CLI::App& app);
 std::unique_ptr<Command> make_refine_command(CLI::App& app);
+std::unique_ptr<Command> make_view_command(CLI::App& app);
 
 /// @return names of the formats that can be read (or written), one a line with their extensions
 std::string format_list();

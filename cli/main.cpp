@@ -25,7 +25,8 @@ const char* const kDescription =
     "  delfront mesh  car.stl  -o case/ --farfield box:10c   grid the outside, for OpenFOAM\n"
     "  delfront check body.vtu                     quality of a grid, with its worst cells\n"
     "  delfront convert body.vtu body.su2          another file format\n"
-    "  delfront refine body.vtu -o fine.vtu        every edge halved";
+    "  delfront refine body.vtu -o fine.vtu        every edge halved\n"
+    "  delfront view body.vtu                      look at it in the browser";
 
 std::string footer() {
   return "File formats, by extension:\n" + format_list() +
@@ -80,6 +81,7 @@ int parse_and_run(int argc, char** argv) {
   commands.push_back(make_info_command(app));
   commands.push_back(make_convert_command(app));
   commands.push_back(make_refine_command(app));
+  commands.push_back(make_view_command(app));
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);

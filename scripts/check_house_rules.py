@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".toml"}
+CODE = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".toml", ".ts", ".mjs", ".js", ".css"}
 LONGEST = 600  # lines of a C++ file
 # Put together here so that this file does not find itself.
 FORBIDDEN_WORDS = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "X" * 3, "HA" + "CK"]) + r")\b")
