@@ -20,7 +20,7 @@ constexpr double kMargin = 1e-9;      ///< flips back and forth are not flips
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
 constexpr double kAgree = 0.5;  ///< cosine between triangles and the surface at their corners: less is not made of more
 constexpr int kFlipPasses = 6;
-constexpr std::size_t kVerticesPerCancelCheck = 1 << 14;
+constexpr std::size_t kVerticesPerCancelCheck = 1 << 14, kTrianglesPerCancelCheck = 1 << 10;
 
 double squared_sine(Point a, Point b, Point c) {
   const Point u = b - a, v = c - b, w = a - c;
@@ -60,13 +60,14 @@ void ChartMesh::improve(int passes, const Context& context) {
     for (int k = 0; k < 2 && flip_all() > 0; ++k) context.check_limits();
   }
   for (int k = 0; k < kFlipPasses && flip_all() > 0; ++k) context.check_limits();
-  for (int k = 0; k < kLiftPasses && lift_angles() > 0; ++k) flip_all();
+  for (int k = 0; k < kLiftPasses && lift_angles(context) > 0; ++k) flip_all();
 }
 
 /// Corners of triangles with an angle under the goal are moved to where the worst angle round them is largest.
-std::size_t ChartMesh::lift_angles() {
+std::size_t ChartMesh::lift_angles(const Context& context) {
   std::size_t count = 0;
   for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+    if (t % kTrianglesPerCancelCheck == 0) context.check_limits();
     if (!is_inside(t)) continue;
     const Triangle& s = c_.tri[t];
     if (squared_sine(at_[s.node[0]], at_[s.node[1]], at_[s.node[2]]) > kGoal) continue;

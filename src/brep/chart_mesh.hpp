@@ -33,7 +33,7 @@ class ChartMesh {
   bool flip(EdgeRef ref);
   double agreement(Point area, const std::array<VertexIndex, 3>& corners) const;
   bool move(VertexIndex v);
-  std::size_t lift_angles();
+  std::size_t lift_angles(const Context& context);
   bool lift_angle(VertexIndex v);
   bool try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst = false);
   Star measure(Point p, Point normal) const;

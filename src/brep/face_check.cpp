@@ -30,6 +30,20 @@ Point2 unwrapped(Point2 uv, Point2 near, const std::array<double, 2>& period) {
   return uv;
 }
 
+/// Where a loop runs back over itself there is nothing between its sides: no triangle has them.
+void check_border(const std::vector<std::uint64_t>& sides, FaceGrid& grid) {
+  const auto is_side = [&](std::uint32_t a, std::uint32_t b) {
+    return std::binary_search(sides.begin(), sides.end(), std::uint64_t(a) << 32 | b);
+  };
+  for (const auto& loop : grid.loops)
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const FacePoint &p = grid.points[loop[i]], &q = grid.points[loop[(i + 1) % loop.size()]];
+      if (p.vertex == q.vertex || is_side(p.vertex, q.vertex) || is_side(q.vertex, p.vertex)) continue;
+      grid.is_border_wrong = true;
+      return grid.fail("its border runs back over itself, with nothing in between: take out the edges that do", p.at);
+    }
+}
+
 /// Sides between points of the border, which a seam has twice: each may be there once in each direction.
 void check_sides(FaceGrid& grid) {
   std::vector<std::uint64_t> sides;
@@ -43,7 +57,7 @@ void check_sides(FaceGrid& grid) {
     }
   std::sort(sides.begin(), sides.end());
   const auto twice = std::adjacent_find(sides.begin(), sides.end());
-  if (twice == sides.end()) return;
+  if (twice == sides.end()) return check_border(sides, grid);
   for (const FacePoint& p : grid.points)
     if (p.vertex == *twice >> 32) return grid.fail("a side is used twice", p.at);
 }

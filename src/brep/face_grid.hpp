@@ -36,11 +36,12 @@ struct FaceGrid {
   bool is_mapped = false;
   std::string gave_up;  ///< why there are no triangles; empty: there are
   Point gave_up_at;
-  std::string why_direct;       ///< why it is not mapped in even charts
-  Point up;                     ///< of a flat chart: the side that the face shows, wherever its mapping folds; else 0
-  bool is_folded = false;       ///< normals that are against it were met
-  double largest_distance = 0;  ///< of triangles' middles from the surface
-  double largest_angle = 0;     ///< between normals of triangles and surface, radians
+  bool is_border_wrong = false;  ///< that is why: sizes have no part in it
+  std::string why_direct;        ///< why it is not mapped in even charts
+  Point up;                      ///< of a flat chart: the side that the face shows, wherever its mapping folds; else 0
+  bool is_folded = false;        ///< normals that are against it were met
+  double largest_distance = 0;   ///< of triangles' middles from the surface
+  double largest_angle = 0;      ///< between normals of triangles and surface, radians
 
   /// @brief A normal of the surface, turned round where the mapping folds.
   Point facing(Point normal) const { return dot(normal, up) < 0 ? Point{} - normal : normal; }

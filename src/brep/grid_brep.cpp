@@ -28,6 +28,7 @@ constexpr double kLowerShare = 0.5;  ///< of the size where a grid failed
 constexpr double kShortShare = 0.8;  ///< of the wanted size: sides of edges that lower sizes round them
 constexpr double kGrowth = 1.4;      ///< of sizes round those
 constexpr std::size_t kPlacesOfFace = 200;
+constexpr double kPlane = 1e-9;              ///< difference between unit normals of a plane
 constexpr double kNeedleDeg = 20;            ///< in sharp corners, below: their first sides become longer
 constexpr double kFairAngleDeg = 15;         ///< below, another way is tried
 constexpr std::size_t kMostForDirect = 300;  ///< points of a border: beyond, the direct way takes seconds
@@ -65,6 +66,7 @@ class BrepGridder {
       return model;
     }
     if (!crossing_.empty()) throw InputError(crossing_, {{why_at_, {}}});
+    if (is_border_wrong_) throw InputError(why_, {{why_at_, {}}});
     throw MeshingError(fmt::format("no valid grid was found: {}; lower the size there", why_), {{why_at_, {}}});
   }
 
@@ -257,6 +259,7 @@ class BrepGridder {
     why_ =
         face.name.empty() ? fmt::format("face {}: {}", f.value + 1, why) : fmt::format("face '{}': {}", face.name, why);
     why_at_ = at;
+    is_border_wrong_ = grids_[f].is_border_wrong;
     has_failed_[f.index()] = true;
     lower_at(at);
     const auto& points = grids_[f].points;
@@ -325,8 +328,17 @@ class BrepGridder {
             "where the geometry is made, or move them apart",
             name_of(a), name_of(b), place.at.x, place.at.y, place.at.z);
         why_at_ = place.at;
+        if (is_plane(a) && is_plane(b)) throw InputError(crossing_, {{why_at_, {}}});  // at any size
         return;
       }
+  }
+
+  bool is_plane(FaceId f) const {
+    const SmoothSurface& surface = *brep_.faces[f].surface;
+    const auto& points = grids_[f].points;
+    const Point first = surface.normal(points[0].uv);
+    return std::all_of(points.begin(), points.end(),
+                       [&](const FacePoint& p) { return length(surface.normal(p.uv) - first) < kPlane; });
   }
 
   static bool have_common_edge(const BrepFace& a, const BrepFace& b) {
@@ -399,6 +411,7 @@ class BrepGridder {
   bool is_bridged_ = true;  ///< where that is asked for; no longer where bridges made triangles cross
   std::string crossing_;    ///< faces that the last round found to cross
   std::string why_;
+  bool is_border_wrong_ = false;  ///< what why_ says is about a border as given
   Point why_at_;
 };
 

@@ -249,7 +249,17 @@ class ChartedPart {
       return grid_.fail("points of its border meet in the parameter plane", grid_.points[origin_[0]].at);
     std::vector<VertexIndex> same_as(domain_.points.size());
     for (VertexIndex v = 0; v < same_as.size(); ++v) same_as[v] = v;
-    insert_segments(domain_, same_as, plane, quiet);
+    try {
+      insert_segments(domain_, same_as, plane, quiet);
+    } catch (const InputError& e) {
+      const Point at =
+          e.places.empty() ? Point{domain_.points[VertexId(0)].x, domain_.points[VertexId(0)].y, 0} : e.places[0].at;
+      grid_.is_border_wrong = true;
+      return grid_.fail(
+          "its border crosses itself, or runs over itself: give its edges in order, and loops apart from "
+          "each other",
+          chart_.place({at.x, at.y}).at);
+    }
     colour_regions(domain_, DomainOptions{}, plane);
     Box extent;
     for (const Point2 p : domain_.points) extent.add(Point{p.x, p.y, 0});

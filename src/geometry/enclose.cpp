@@ -77,10 +77,13 @@ void require_affordable(double triangles, double h) {
 }
 
 [[noreturn]] void refuse(const char* shape, Point worst, double by) {
-  throw InputError(fmt::format("the far-field {} does not enclose the surface: ({:.6g}, {:.6g}, {:.6g}) is on it or "
-                               "outside by {:.4g}; make it larger",
-                               shape, worst.x, worst.y, worst.z, by),
-                   {{worst, {}}});
+  throw InputError(
+      fmt::format("the far-field {} does not enclose the surface: ({:.6g}, {:.6g}, {:.6g}) is on it or "
+                  "outside by {:.4g}; make it larger (where the body meets a symmetry plane, that plane and "
+                  "the outer boundary are part of the geometry, with no far field asked for: "
+                  "docs/geometry.md)",
+                  shape, worst.x, worst.y, worst.z, by),
+      {{worst, {}}});
 }
 
 void check_box_encloses(const Model& model, const Box& box) {

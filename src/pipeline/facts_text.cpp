@@ -13,6 +13,9 @@ namespace delfront {
 
 namespace {
 
+constexpr const char* kUnnamedCurve = "curve_";  ///< and its number: what edges without a name are called
+constexpr std::size_t kMostUnnamed = 12;         ///< of these in a list
+
 const char* yes_no(bool value) { return value ? "yes" : "no"; }
 
 /// To three digits: more would be made up.
@@ -87,12 +90,15 @@ std::string mesh_facts_text(const Mesh& mesh) {
     const int dim = mesh.dimension - codimension;
     if (dim < 1) continue;
     std::string line;
+    std::size_t unnamed = 0;
     for (std::size_t g = 0; g < count.size(); ++g) {
       const Group& group = mesh.groups[GroupId(g)];
       if (group.dimension != dim) continue;
+      if (codimension == 2 && group.name.starts_with(kUnnamedCurve) && ++unnamed > kMostUnnamed) continue;
       line += fmt::format("{}{} ({}{}{})", line.empty() ? "" : ", ", group.name, with_commas(count[g]),
                           group.kind.empty() ? "" : ", ", group.kind);
     }
+    if (unnamed > kMostUnnamed) line += fmt::format(" and {} more without names", with_commas(unnamed - kMostUnnamed));
     if (!line.empty()) text += fmt::format("{:<14} {}\n", title, line);
   }
   const Box box = mesh.bounding_box();

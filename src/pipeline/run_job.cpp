@@ -76,6 +76,18 @@ const HeldInput* held_input(const Run& run, const std::string& path) {
   return held == run.extras.held.end() ? nullptr : held->second.get();
 }
 
+/// So that a selection that catches other faces than were meant is seen.
+void say_selected_faces(const Run& run, const GeometryInput& smooth) {
+  for (const BoundaryOptions& boundary : run.options.boundaries) {
+    if (!boundary.selects_faces()) continue;
+    std::vector<std::size_t> faces;
+    for (std::size_t f = 0; f < smooth.brep.faces.size(); ++f)
+      if (smooth.brep.faces[FaceId(f)].name == boundary.name) faces.push_back(f + 1);
+    run.context.log(LogLevel::info, fmt::format("boundary '{}': face{} {}", boundary.name, faces.size() == 1 ? "" : "s",
+                                                fmt::join(faces, ", ")));
+  }
+}
+
 /// Smooth geometry has a grid to look at until sizes are known.
 void read_smooth(Run& run, const std::string& path) {
   CadReport cad;
@@ -94,6 +106,7 @@ void read_smooth(Run& run, const std::string& path) {
   with_file(path, smooth.doubt,
             [&] { smooth.look = held && held->look ? *held->look : look_at_brep(smooth.brep, run.context); });
   name_selected_faces(run.options.boundaries, path, cad, smooth);
+  say_selected_faces(run, smooth);
   run.inputs.push_back(named_surface(smooth.look.grid, smooth.brep, held ? held->stem : stem_of(path)));
   run.smooth.push_back(std::move(smooth));
 }
@@ -101,6 +114,8 @@ void read_smooth(Run& run, const std::string& path) {
 void read_inputs(Run& run) {
   const std::vector<std::string>& files = run.options.input.files;
   for (std::size_t i = 0; i < files.size(); ++i) {
+    if (std::find(files.begin(), files.begin() + std::ptrdiff_t(i), files[i]) != files.begin() + std::ptrdiff_t(i))
+      throw usage_error(run.options, "input.files", fmt::format("{} is given twice", files[i]));
     run.context.progress("read", i, files.size(), "files");
     const HeldInput* const held = held_input(run, files[i]);
     const bool is_smooth = is_smooth_input(files[i], run.extras);
@@ -157,6 +172,13 @@ EncloseOptions coarse_far_field(const Options& options) {
 /// The far field and the patches' names and kinds. What the input holds is a wall in the flow unless said otherwise.
 void set_boundaries(Run& run, Model& model) {
   Options& options = run.options;
+  for (const GeometryInput& smooth : run.smooth)
+    if (has_far_field(options) && smooth.look.extent.body < smooth.look.extent.whole)
+      run.context.log(
+          LogLevel::warning,
+          fmt::format("{} looks as if it had a far field of its own, {:.3g} wide round a body of {:.3g}: "
+                      "another one round it makes the domain outside of both",
+                      options.input.files[smooth.input], smooth.look.extent.whole, smooth.look.extent.body));
   const bool looks_only = has_far_field(options) && options.stop_after == "geometry";
   const std::vector<BoundaryOptions> boundaries = looks_only ? boundaries_of_input(options) : options.boundaries;
   if (has_far_field(options) && !looks_only) {
