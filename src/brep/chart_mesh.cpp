@@ -14,7 +14,9 @@ constexpr double kRegular = 0.995;     ///< mean quality of a star that is left 
 constexpr double kSmoothAngle = 0.41;  ///< squared sine of 40 degrees: worse angles are not made
 constexpr double kLeastGain = 1e-3;    ///< of a star's mean quality
 constexpr double kRegularHeight = 0.86602540378443865;
-constexpr double kGoal = 0.35;  ///< squared sine of 36 degrees: angles below it are lifted
+constexpr double kGoal = 0.35;      ///< squared sine of 36 degrees: angles below it are lifted
+constexpr double kHopeless = 0.25;  ///< of all triangles: so many under that goal are left
+constexpr std::size_t kFewTriangles = 5000;
 constexpr int kLiftPasses = 4, kLiftSteps = 10;
 constexpr double kMargin = 1e-9;      ///< flips back and forth are not flips
 constexpr double kFoldCosine = 0.35;  ///< least cosine between triangles that come and those that go
@@ -60,7 +62,24 @@ void ChartMesh::improve(int passes, const Context& context) {
     for (int k = 0; k < 2 && flip_all() > 0; ++k) context.check_limits();
   }
   for (int k = 0; k < kFlipPasses && flip_all() > 0; ++k) context.check_limits();
-  for (int k = 0; k < kLiftPasses && lift_angles(context) > 0; ++k) flip_all();
+  if (!is_hopeless())
+    for (int k = 0; k < kLiftPasses && lift_angles(context) > 0; ++k) flip_all();
+}
+
+bool ChartMesh::is_small(TriIndex t) const {
+  const Triangle& s = c_.tri[t];
+  return squared_sine(at_[s.node[0]], at_[s.node[1]], at_[s.node[2]]) <= kGoal;
+}
+
+/// Where needles are everywhere the chart is to blame, and moving each point would take minutes.
+bool ChartMesh::is_hopeless() const {
+  std::size_t all = 0, small = 0;
+  for (TriIndex t = 0; t < c_.tri.size(); ++t) {
+    if (!is_inside(t)) continue;
+    ++all;
+    small += is_small(t);
+  }
+  return small > kFewTriangles && double(small) > kHopeless * double(all);
 }
 
 /// Corners of triangles with an angle under the goal are moved to where the worst angle round them is largest.
@@ -69,9 +88,8 @@ std::size_t ChartMesh::lift_angles(const Context& context) {
   for (TriIndex t = 0; t < c_.tri.size(); ++t) {
     if (t % kTrianglesPerCancelCheck == 0) context.check_limits();
     if (!is_inside(t)) continue;
-    const Triangle& s = c_.tri[t];
-    if (squared_sine(at_[s.node[0]], at_[s.node[1]], at_[s.node[2]]) > kGoal) continue;
-    for (const VertexIndex v : s.node)
+    if (!is_small(t)) continue;
+    for (const VertexIndex v : c_.tri[t].node)
       if (v >= first_free_) count += lift_angle(v);
   }
   return count;

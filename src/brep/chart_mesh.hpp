@@ -33,6 +33,8 @@ class ChartMesh {
   bool flip(EdgeRef ref);
   double agreement(Point area, const std::array<VertexIndex, 3>& corners) const;
   bool move(VertexIndex v);
+  bool is_small(TriIndex t) const;
+  bool is_hopeless() const;
   std::size_t lift_angles(const Context& context);
   bool lift_angle(VertexIndex v);
   bool try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst = false);

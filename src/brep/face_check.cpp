@@ -57,7 +57,10 @@ void check_sides(FaceGrid& grid) {
     }
   std::sort(sides.begin(), sides.end());
   const auto twice = std::adjacent_find(sides.begin(), sides.end());
-  if (twice == sides.end()) return check_border(sides, grid);
+  if (twice == sides.end()) {
+    if (grid.is_mapped) check_border(sides, grid);  // else seams are no sides
+    return;
+  }
   for (const FacePoint& p : grid.points)
     if (p.vertex == *twice >> 32) return grid.fail("a side is used twice", p.at);
 }

@@ -216,6 +216,7 @@ class BrepGridder {
     const bool is_mapped_only = options_.method == BrepOptions::Method::mapped;
     const bool tries_even = !is_direct && !may_fold && failures_[f.index()] < kTooOften;
     if ((is_mapped_only || tries_even) && (map(ChartWay::even) || is_mapped_only)) return;
+    const FaceGrid first = grid.is_border_wrong ? grid : FaceGrid{};
     const std::string why = is_direct ? "asked for" : may_fold ? "its normals turn round" : grid.gave_up;
     mark_vague_normals(*face.surface, border);
     FaceGrid best;
@@ -230,6 +231,7 @@ class BrepGridder {
                        (best_angle >= 0 && border.points.size() > kMostForDirect));
     if (!is_mapped) keeps(fill([&] { grid_directly(brep_, face, edges_, wanted_, grid, context_); }));
     if (best_angle >= 0) grid = std::move(best);
+    if (best_angle < 0 && first.is_border_wrong) grid = first;  // what other ways say is no better
     grid.why_direct = why.empty() ? "its grids in even charts failed" : why;
   }
 

@@ -73,6 +73,54 @@ class SmoothGeometry(case.Case):
                    '[boundaries.later]\nselect = { id = [2, 1, 3] }\n[output]\nfiles = ["room.vtu"]\n')
         self.expect(2, "mesh", "job.toml", says=["job.toml:", "boundaries.first", "come later", "later"])
 
+    def polygon(self, name, corners):
+        """A plane face with that border."""
+        text = '[[surface]]\nname = "plane"\ntype = "plane"\n'
+        for k, (x, y) in enumerate(corners):
+            text += f'[[corner]]\nname = "c{k}"\nat = [{x}, {y}, 0]\n'
+        edges = []
+        for k in range(len(corners)):
+            edges.append(f"e{k}")
+            text += f'[[edge]]\nname = "e{k}"\ntype = "line"\nfrom = "c{k}"\nto = "c{(k + 1) % len(corners)}"\n'
+        loop = ", ".join(f'"{edge}"' for edge in edges)
+        self.write(name, f'{text}[[face]]\nname = "f"\nsurface = "plane"\nloops = [[{loop}]]\n')
+
+    def test_borders_that_run_over_themselves_are_refused(self):
+        self.polygon("back.geom.toml", [(0, 0), (2, 0), (1, 0), (1, 1), (0, 1)])
+        self.expect(3, "mesh", "back.geom.toml", "-o", "back.vtp", "--stop-after", "surface",
+                    says=["face 'f'", "runs back over itself"])
+        star = [(math.cos(4 * math.pi * k / 5), math.sin(4 * math.pi * k / 5)) for k in range(5)]
+        self.polygon("star.geom.toml", star)
+        self.expect(3, "mesh", "star.geom.toml", "-o", "star.vtp", "--stop-after", "surface",
+                    says=["face 'f'", "crosses itself"])
+        self.assertFalse({"back.vtp", "star.vtp"} & set(self.files()))
+
+    def test_boxes_that_share_a_face_are_refused_at_once(self):
+        box = '[[shape]]\ntype = "box"\nname = "{}"\nmin = [{}, 0, 0]\nmax = [{}, 1, 1]\n'
+        self.write("boxes.geom.toml", box.format("left", 0, 1) + box.format("right", 1, 2))
+        self.expect(3, "mesh", "boxes.geom.toml", "-o", "boxes.vtu", says=["left", "right", "cross or touch"])
+
+    def test_a_hole_in_no_body_is_refused(self):
+        ball = '[[shape]]\ntype = "sphere"\nname = "hole"\nradius = 1\nreversed = true\norigin = [{}, 0, 0]\n'
+        body = '[[shape]]\ntype = "box"\nmin = [-2, -2, -2]\nmax = [2, 2, 2]\n'
+        self.write("hole.geom.toml", ball.format(0))
+        self.expect(3, "mesh", "hole.geom.toml", "-o", "hole.vtu", says=["hole.geom.toml:1", "lies in no body"])
+        self.write("hole.geom.toml", body + ball.format(5))
+        self.expect(3, "mesh", "hole.geom.toml", "-o", "hole.vtu", says=["hole.geom.toml:5", "lies in no body"])
+        self.write("hole.geom.toml", body + ball.format(0))
+        self.expect(0, "mesh", "hole.geom.toml", "-o", "hole.vtu")
+
+    def test_a_file_given_twice_is_said(self):
+        self.write("ball.geom.toml", BALL)
+        self.expect(2, "mesh", "ball.geom.toml", "ball.geom.toml", "-o", "ball.vtu", says="given twice")
+
+    def test_a_far_field_round_another_is_warned_of(self):
+        self.write("flow.geom.toml", '[[shape]]\ntype = "sphere"\nradius = 20\n'
+                   '[[shape]]\ntype = "box"\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nreversed = true\n')
+        result = self.expect(0, "mesh", "flow.geom.toml", "-o", "flow.vtp", "--stop-after", "surface", "--farfield",
+                             "sphere:3c", "--accuracy", "coarse")
+        self.assertIn("far field of its own", case.unbroken(result.stderr))
+
     def test_shapes_that_cross_are_named(self):
         for x in ("0.8", "0"):  # the second: the same twice
             self.write("balls.geom.toml", '[[shape]]\ntype = "sphere"\nname = "left"\nradius = 1\n'
