@@ -50,8 +50,8 @@ std::string fit_name(const std::string& name, NameRule rule, const char* role) {
 
 }  // namespace
 
-std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* format,
-                                   std::vector<std::string>& notes) {
+std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* format, std::vector<std::string>& notes,
+                                   std::array<int, 2> written) {
   std::vector<std::string> fitted(mesh.groups.size());
   std::vector<bool> is_settled(mesh.groups.size(), false);
   std::set<std::pair<int, std::string>> taken;
@@ -69,6 +69,7 @@ std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* 
       const std::string end = fmt::format("_{}", number);
       fitted[i] = (rule == NameRule::cgns ? base.substr(0, kLongestCgns - end.size()) : base) + end;
     }
+    if (group.dimension < written[0] || group.dimension > written[1]) continue;
     const char* role = role_name(mesh, group.dimension);
     notes.push_back(group.name.empty()
                         ? fmt::format("{}: an unnamed {} is written as \"{}\"", format, role, fitted[i])

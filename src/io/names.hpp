@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ enum class NameRule {
 ///
 /// Empty names become "patch", "region", "curve" or "point".
 /// @param[in,out] notes  a sentence for each name that changed
-std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* format,
-                                   std::vector<std::string>& notes);
+/// @param written        dimensions of the groups that the format holds: of others nothing is said
+std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* format, std::vector<std::string>& notes,
+                                   std::array<int, 2> written = {0, 3});
 
 }  // namespace delfront

@@ -31,7 +31,7 @@ class AbaqusWriter {
  public:
   AbaqusWriter(const Mesh& mesh, Output& out, Context& context, std::vector<std::string>& notes)
       : mesh_(mesh), out_(out), context_(context), notes_(notes), top_(mesh.top_dimension()) {
-    names_ = fit_names(mesh, NameRule::foam_word, "Abaqus", notes);
+    names_ = fit_names(mesh, NameRule::foam_word, "Abaqus", notes, {mesh.dimension - 1, mesh.dimension});
   }
 
   void write() {

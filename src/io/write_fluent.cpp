@@ -32,7 +32,7 @@ class FluentWriter {
  public:
   FluentWriter(const Mesh& mesh, Output& out, Context& context, std::vector<std::string>& notes)
       : mesh_(mesh), out_(out), context_(context), notes_(notes), facets_(build_facets(mesh, context)) {
-    names_ = fit_names(mesh, NameRule::foam_word, "Fluent", notes);
+    names_ = fit_names(mesh, NameRule::foam_word, "Fluent", notes, {mesh.dimension - 1, mesh.dimension});
     if (facets_.num_loose > 0)
       notes.push_back(fmt::format("Fluent: {} faces that bound no cell are left out", facets_.num_loose));
   }

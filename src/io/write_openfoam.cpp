@@ -65,7 +65,7 @@ class FoamWriter {
  public:
   FoamWriter(const Mesh& mesh, Context& context, std::vector<std::string>& notes)
       : mesh_(mesh), context_(context), notes_(notes), faces_(build_foam_faces(mesh, context)) {
-    names_ = fit_names(mesh, NameRule::foam_word, "OpenFOAM", notes);
+    names_ = fit_names(mesh, NameRule::foam_word, "OpenFOAM", notes, {mesh.dimension - 1, mesh.dimension});
     make_patches();
     if (faces_.num_loose > 0)
       notes.push_back(fmt::format("OpenFOAM: {} faces that bound no cell are left out", faces_.num_loose));

@@ -77,7 +77,8 @@ void write_markers(Output& out, const std::vector<Marker>& markers) {
 
 /// One a group, in the order of mesh.groups; faces without a group make a last one.
 std::vector<Marker> make_markers(const Mesh& mesh, std::vector<std::string>& notes) {
-  const std::vector<std::string> names = fit_names(mesh, NameRule::word, "SU2", notes);
+  const std::vector<std::string> names =
+      fit_names(mesh, NameRule::word, "SU2", notes, {mesh.dimension - 1, mesh.dimension - 1});
   std::vector<Marker> by_group(mesh.groups.size() + 1);
   std::size_t num_inner = 0, num_regions = 0;
   for (const CellBlock& block : mesh.blocks) {

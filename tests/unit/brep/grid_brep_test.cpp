@@ -318,7 +318,7 @@ TEST(GridBrep, ALoopThatCrossesAnotherIsAnError) {
   cut_hole(brep, face_0(), {0.9, 0.5}, 0.3, 0.1);  // over the border
   Context context;
   BrepGridReport report;
-  EXPECT_THROW(grid_brep(brep, LinearSize(0.2, 1, {}, 0, 1), {}, report, context), MeshingError);
+  EXPECT_THROW(grid_brep(brep, LinearSize(0.2, 1, {}, 0, 1), {}, report, context), InputError);
 }
 
 }  // namespace
