@@ -81,6 +81,7 @@ std::vector<SharpCorner> find_sharp_corners(const Brep& brep, double below) {
                    [&](const BrepUse& use) { return !brep.edges[use.edge].is_degenerate(); });
       for (std::size_t i = 0; i < uses.size(); ++i) {
         const BrepUse &from = uses[i], &to = uses[(i + 1) % uses.size()];
+        if (from.edge == to.edge) continue;  // a seam that turns round in a pole
         const BrepEdge& after = brep.edges[to.edge];
         const Way back(brep.edges[from.edge], !from.is_reversed), ahead(after, to.is_reversed);
         const double angle = angle_between(ahead.direction(), back.direction());
@@ -107,7 +108,7 @@ Array<EdgeId, std::array<double, 2>> ranges_between_sharp_corners(const Brep& br
   if (corners.empty()) return ranges;
   for (const SharpCorner& corner : find_sharp_corners(brep, kSharp)) {
     const BrepUse &from = corner.from, &to = corner.to;
-    if (corner.angle < kCusp || from.edge == to.edge || !corners.contains(corner.corner)) continue;
+    if (corner.angle < kCusp || !corners.contains(corner.corner)) continue;
     const auto sides =
         first_sides({brep.edges[from.edge], !from.is_reversed}, {brep.edges[to.edge], to.is_reversed}, size);
     if (!sides) continue;

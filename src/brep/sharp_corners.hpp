@@ -17,7 +17,8 @@ struct SharpCorner {
   BrepUse from, to;  ///< of the face's loop
 };
 
-/// @brief All of them, in the order of the faces; edges that are a point have no part in it.
+/// @brief All of them, in the order of the faces; edges that are a point have no part in it, nor
+/// have seams that turn round.
 /// @param below  radians
 std::vector<SharpCorner> find_sharp_corners(const Brep& brep, double below);
 

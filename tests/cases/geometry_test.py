@@ -44,6 +44,7 @@ class SmoothGeometry(case.Case):
         self.assertEqual((grid["file"], grid["stopped"]), ("ball.geom.toml", ""))
         last = grid["rounds"][-1]
         self.assertEqual(sum(last["angles"]["counts"]), last["triangles"])
+        self.assertEqual(last["min_angle_away_from_sharp_corners"]["value"], last["min_angle"])
         self.assertEqual([patch["name"] for patch in last["patches"]], ["sphere"])
         self.assertLess(last["deviation"]["value"], 0.004 * 2)
 

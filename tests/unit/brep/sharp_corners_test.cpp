@@ -65,6 +65,7 @@ TEST(SharpCorners, AreFoundInsideFacesOnly) {
   const std::vector<SharpCorner> inside = find_sharp_corners(make_prism({{0, 0}, {1, 0}, tip}, 1), 0.5);
   ASSERT_EQ(inside.size(), 2u);
   for (const SharpCorner& corner : inside) EXPECT_NEAR(corner.angle, a, 1e-12);
+  EXPECT_TRUE(find_sharp_corners(make_sphere({}, 1), 0.5).empty());  // its seam turns round at both poles
   // the same wedge, cut out of a square: no face is sharp there
   EXPECT_TRUE(find_sharp_corners(make_prism({{0, 0}, {2, -2}, {2, 2}, {-2, 2}, {-2, -2}, {1.9, -2}}, 1), 0.5).empty());
 }
