@@ -22,6 +22,8 @@ def test_grid_is_that_of_the_command_line(cube_geometry, tmp_path):
     cube_geometry.meshes["cube"].write(tmp_path / "cube.vtp")
     job = {"surface": {"method": "front"}, "size": {"hmax": 0.2, "growth": 1.3}}
     flags = ["--surface-method", "front", "--hmax", "0.2", "--growth", "1.3"]
+    if "DELFRONT" not in os.environ:
+        pytest.skip("the command line was not built: DELFRONT names it")
     command = [os.environ["DELFRONT"], "mesh", "cube.vtp", "-o", "grid.vtu", "-q", *flags]
     subprocess.run(command, cwd=tmp_path, check=True)
     ours = df.run({"input": {"files": [tmp_path / "cube.vtp"]}, **job})
