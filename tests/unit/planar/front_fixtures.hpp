@@ -157,8 +157,7 @@ inline Filled fill_domain(const PlanarDomain& domain, const Options& options, st
   if (is_stretched) size = sizes;
   const std::vector<double> areas = areas_of_regions(grid);
   std::set<VertexIndex> used_before, used;
-  const auto collect = [&](std::set<VertexIndex>& all) {
-    const TriComplex& c = grid.complex;
+  const auto collect = [&c = grid.complex](std::set<VertexIndex>& all) {
     for (TriIndex t = 0; t < c.tri.size(); ++t)
       if (!c.is_dead(t) && !c.is_ghost(t) && c.tri[t].region != kOutside)
         all.insert(std::begin(c.tri[t].node), std::end(c.tri[t].node));
