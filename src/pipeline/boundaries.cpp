@@ -6,6 +6,7 @@
 
 #include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
+#include "mesh/named_groups.hpp"
 #include "pipeline/option_table.hpp"
 
 namespace delfront {
@@ -104,16 +105,17 @@ Mesh surface_mesh(const Model& model) {
     for (const VertexId v : model.triangles[TriangleId(t)]) block.vertices.push_back(v);
     block.group.push_back(GroupId(model.patch_of_triangle[TriangleId(t)].index()));
   }
+  NamedGroups curves(mesh, 1), corner_names(mesh, 0);
   for (const Curve& curve : model.curves)
     for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
       CellBlock& lines = mesh.block(CellType::line);
       lines.vertices.insert(lines.vertices.end(), {curve.vertices[i], curve.vertices[i + 1]});
-      lines.group.push_back(mesh.add_group(1, curve.name));
+      lines.group.push_back(curves(curve.name));
     }
   for (std::size_t i = 0; i < model.corners.size(); ++i) {
     CellBlock& corners = mesh.block(CellType::vertex);
     corners.vertices.push_back(model.corners[i]);
-    corners.group.push_back(mesh.add_group(0, model.corner_names[i]));
+    corners.group.push_back(corner_names(model.corner_names[i]));
   }
   return mesh;
 }

@@ -96,6 +96,8 @@ void read_smooth(Run& run, const std::string& path) {
   {
     const StageTimer timer(run.context, "read");
     if (held) cad = held->cad;
+    const bool is_alone = run.options.input.files.size() == 1 && !has_far_field(run.options);
+    if (is_alone && !held && !is_cad_file(path)) check_holes(delfront::read_geometry(path), path);
     smooth.brep = held ? *held->brep : read_brep(path, run.context, cad);
     smooth.doubt = doubt_of(cad);
   }

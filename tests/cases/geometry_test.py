@@ -111,6 +111,26 @@ class SmoothGeometry(case.Case):
         self.write("hole.geom.toml", body + ball.format(0))
         self.expect(0, "mesh", "hole.geom.toml", "-o", "hole.vtu")
 
+    def test_a_hole_in_the_body_of_another_file_is_taken(self):
+        self.write("body.geom.toml", '[[shape]]\ntype = "box"\nmin = [-2, -2, -2]\nmax = [2, 2, 2]\n')
+        self.write("hole.geom.toml", '[[shape]]\ntype = "box"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nreversed = true\n')
+        self.expect(0, "mesh", "body.geom.toml", "hole.geom.toml", "-o", "body.vtu", "--report", "body.json")
+        report = json.loads((self.folder / "body.json").read_text())
+        self.assertAlmostEqual(report["quality"]["volume"], 64 - 8, places=9)
+
+    def test_a_hole_in_a_far_field_is_taken(self):
+        self.write("hole.geom.toml", '[[shape]]\ntype = "box"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nreversed = true\n')
+        self.expect(0, "mesh", "hole.geom.toml", "-o", "flow.vtu", "--farfield", "box:3c", "--accuracy", "coarse")
+
+    def test_very_many_names_do_not_fill_the_terminal(self):
+        self.write("boxes.geom.toml", "".join(
+            f'[[shape]]\ntype = "box"\nname = "box{i}"\nmin = [{2 * i}, 0, 0]\nmax = [{2 * i + 1}, 1, 1]\n' for i in range(20)))
+        result = self.expect(0, "mesh", "boxes.geom.toml", "-o", "boxes.vtp", "--stop-after", "surface", "--hmax", "1",
+                             "--report", "boxes.json")
+        self.assertIn("and 20 more, which a report lists", case.unbroken(result.stdout))
+        names = {group["name"] for group in json.loads((self.folder / "boxes.json").read_text())["boundaries"]}
+        self.assertEqual(len(names & {f"box{i}_{k}_{side}" for i in range(20) for k in "xyz" for side in ("low", "high")}), 120)
+
     def test_a_file_given_twice_is_said(self):
         self.write("ball.geom.toml", BALL)
         self.expect(2, "mesh", "ball.geom.toml", "ball.geom.toml", "-o", "ball.vtu", says="given twice")
