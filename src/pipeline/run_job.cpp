@@ -216,7 +216,9 @@ Options options_for_looks(const Options& options, const Model& model, bool is_al
   std::vector<std::string> later;  // of the far field, which is not there yet
   if (has_far_field(options)) later.push_back(options.domain.enclose.name);
   for (const BoundaryOptions& b : options.boundaries)
-    if (!later.empty() && (b.select.empty() ? b.name : b.select) == later[0]) later.push_back(b.name);
+    if (const auto patterns = b.patterns();
+        !later.empty() && std::find(patterns.begin(), patterns.end(), later[0]) != patterns.end())
+      later.push_back(b.name);
   std::erase_if(result.size.on, [&](const SizeOnOptions& on) {
     const auto fits = [&](const std::string& name) { return matches_pattern(name, on.name); };
     return std::none_of(names.begin(), names.end(), fits) && std::any_of(later.begin(), later.end(), fits);
