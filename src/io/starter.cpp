@@ -102,6 +102,26 @@ void note_assumed_walls(std::vector<StarterBoundary>& boundaries, const std::str
                     path, fmt::join(names, ", "), names[0]));
 }
 
+StarterFiles start_su2(const Mesh& mesh, const std::string& path, Context& context) {
+  StarterFiles result;
+  std::vector<StarterBoundary> boundaries = su2_boundaries(mesh);
+  note_assumed_walls(boundaries, path, result.notes);
+  write_files({su2_starter(mesh, path, boundaries)}, boundaries, context, result);
+  return result;
+}
+
+StarterFiles start_openfoam(const Mesh& mesh, const std::string& path, Context& context) {
+  StarterFiles result;
+  std::string folder = path;
+  while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
+  std::vector<StarterBoundary> boundaries = foam_boundaries(mesh, folder);
+  note_assumed_walls(boundaries, path, result.notes);
+  CaseFolders folders;
+  for (const char* part : {"0", "constant", "system"}) folders.make(fmt::format("{}/{}", folder, part));
+  write_files(foam_starter(folder, boundaries), boundaries, context, result);
+  return result;
+}
+
 }  // namespace
 
 Point inward_direction(const Mesh& mesh, GroupId group) {
@@ -145,21 +165,11 @@ StarterFiles write_starter_files(const Mesh& mesh, const std::string& path, cons
   if (const FormatInfo& found = format_of(path, format, true); found.name != solver)
     throw UsageError(fmt::format("{} is a file of {}, and starter files for {} need a grid of that solver", path,
                                  found.title, solver));
-  StarterFiles result;
-  if (solver == "su2") {
-    std::vector<StarterBoundary> boundaries = su2_boundaries(mesh);
-    note_assumed_walls(boundaries, path, result.notes);
-    write_files({su2_starter(mesh, path, boundaries)}, boundaries, context, result);
-    return result;
+  try {
+    return solver == "su2" ? start_su2(mesh, path, context) : start_openfoam(mesh, path, context);
+  } catch (const IoError& e) {
+    throw IoError(fmt::format("{}; the grid {} itself is complete", e.what(), path));
   }
-  std::string folder = path;
-  while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
-  std::vector<StarterBoundary> boundaries = foam_boundaries(mesh, folder);
-  note_assumed_walls(boundaries, path, result.notes);
-  CaseFolders folders;
-  for (const char* part : {"0", "constant", "system"}) folders.make(fmt::format("{}/{}", folder, part));
-  write_files(foam_starter(folder, boundaries), boundaries, context, result);
-  return result;
 }
 
 }  // namespace delfront

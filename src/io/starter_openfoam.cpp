@@ -72,7 +72,7 @@ class FoamStarter {
     for (const StarterBoundary& boundary : boundaries_) {
       const std::string entries =
           is_constraint(boundary.patch_type) ? fmt::format("type {};", boundary.patch_type) : condition(boundary);
-      text += fmt::format("    {}{}\n    {{ {} }}\n", boundary.name, wall_note(boundary, "// CHANGE,"), entries);
+      text += fmt::format("    {:<15} {{ {} }}{}\n", boundary.name, entries, wall_note(boundary, "// CHANGE,"));
     }
     add("0", name, kind, text + "}\n", true);
   }
@@ -160,7 +160,7 @@ class FoamStarter {
 
   void add_system() {
     add("system", "controlDict", "dictionary",
-        "// potentialFoam first (it overwrites 0/U with a better start), then simpleFoam. CHANGE endTime: iterations.\n"
+        "// simpleFoam starts from 0/U as it is; potentialFoam before it overwrites 0/U. CHANGE endTime: iterations.\n"
         "application     simpleFoam;\nstartFrom       startTime;\nstartTime       0;\nstopAt          endTime;\n"
         "endTime         500;\ndeltaT          1;\nwriteControl    timeStep;\nwriteInterval   100;\npurgeWrite      "
         "2;\n"

@@ -169,7 +169,8 @@ class OpenFoam(case.Case):
         for assumed in ("zmin", "zmax"):  # type patch, which wall functions refuse
             self.assertEqual(fields["U"][assumed], "type noSlip;")
             self.assertIn("calculated", fields["nut"][assumed])
-        self.assertIn("zmax  // CHANGE, no kind was given: assumed a wall", (self.folder / "foam/0/U").read_text())
+        self.assertRegex((self.folder / "foam/0/U").read_text(),
+                         r"zmax +\{ type noSlip; \}  // CHANGE, no kind was given: assumed a wall\n")
         self.assertIn("kOmegaSST", (self.folder / "foam/constant/turbulenceProperties").read_text())
         self.assertIn("simpleFoam", (self.folder / "foam/system/controlDict").read_text())
 
@@ -235,6 +236,13 @@ class SolverUsage(case.Case):
         self.expect(2, "convert", "box.stl", "box.vtu", "--solver", "su2", says="--solver su2: box.vtu")
         self.expect(2, "convert", "box.stl", "box.su2", "--solver", "fluent", says="su2, openfoam")
         self.assertEqual(self.files(), ["box.stl"])
+
+    def test_a_place_that_cannot_be_written_is_said_and_the_grid_is_whole(self):
+        (self.folder / "foam").mkdir()
+        self.write("foam/0", "a file")
+        self.expect(7, "mesh", "box.stl", "-o", "foam/", "--solver", "openfoam", says=["foam/0", "the grid foam/ itself is complete"])
+        self.expect(0, "check", "foam/")
+        self.assertFalse([name for name in self.files() if "tmp" in name])
 
     def test_only_its_own_outputs_get_files(self):
         self.expect(0, "mesh", "box.stl", "-o", "a.vtu", "-o", "b.su2", "-o", "foam/", "--solver", "su2")

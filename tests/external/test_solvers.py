@@ -21,6 +21,8 @@ import tempfile
 import typing
 import unittest
 
+import numpy as np
+
 DELFRONT = sys.argv.pop(1) if len(sys.argv) > 1 else "delfront"
 IS_LONG = "--long" in sys.argv
 if IS_LONG:
@@ -83,10 +85,10 @@ def ball_surface(levels):
     return "solid ball\n" + "".join(facets) + "endsolid ball\n"
 
 
-def make_box(folder):
+def make_box(folder, kinds=KINDS):
     """The grid as VTU and as an OpenFOAM case with starter files; the other formats are made of the VTU."""
     (folder / "box.stl").write_text(box_surface())
-    kinds = [word for name, kind in KINDS.items() for word in ("--set", f"boundaries.{name}.kind={kind}")]
+    kinds = [word for name, kind in kinds.items() for word in ("--set", f"boundaries.{name}.kind={kind}")]
     delfront("mesh", folder / "box.stl", "--surface-method", "front", "--hmax", "0.25", "-o", folder / "box.vtu", "-o",
              f"{folder / 'foam'}/", "--solver", "openfoam", *kinds)
 
@@ -94,28 +96,78 @@ def make_box(folder):
 # ---- OpenFOAM: its programs end with status 0 whatever happens, so what they say and write decides.
 
 
-def foam(program, case):
-    status, text = run(program, "-case", case, env=FOAM)
+def foam(program, case, *options):
+    """What it said, and what is wrong with how it ended."""
+    status, text = run(program, "-case", case, *options, env=FOAM)
     fatal = re.search(r"FOAM FATAL(?:.*\n?){6}", text)
     if status or fatal or not re.search(r"^End", text, re.M):  # a status below 0: a signal, as of a division by zero
-        return text, [f"{program} did not end well: {fatal.group(0) if fatal else text[-500:]}"]
+        return text, [f"{program} ends with {status}: {fatal.group(0) if fatal else text[-500:]}"]
     return text, []
 
 
-def read_vectors(path):
-    """internalField of an ASCII volVectorField."""
+def first_list(path):
     text = path.read_text()
-    uniform = re.search(r"internalField\s+uniform\s+\(([^)]*)\)", text)
-    if uniform:
-        return [tuple(float(w) for w in uniform.group(1).split())]
-    values = text[text.index("internalField"):text.index("boundaryField")]
-    return [tuple(float(w) for w in m.split()) for m in re.findall(r"\(([^()\n]+)\)\n", values)]
+    begin = text.index("\n(\n") + 3
+    return text[begin:text.index("\n)", begin)]
 
 
-def farthest_from_uniform(path):
-    """Largest distance of a cell's velocity from the exact (SPEED, 0, 0), over SPEED; nan counts as far."""
-    errors = [sum((a - b) ** 2 for a, b in zip(u, (SPEED, 0, 0))) ** 0.5 / SPEED for u in read_vectors(path)]
-    return max((e if e == e else float("inf") for e in errors), default=float("inf"))
+def table(path, width):
+    """The first list of an OpenFOAM file of vectors or numbers."""
+    return np.array(re.sub(r"[()]", " ", first_list(path)).split(), dtype=float).reshape(-1, width)
+
+
+def read_triangles(case):
+    """Area vectors and owners of all faces (which must be triangles), neighbours of the inner ones; middles of cells."""
+    mesh = case / "constant" / "polyMesh"
+    corners = np.array(re.sub(r"3\(|\)", " ", first_list(mesh / "faces")).split(), dtype=int)
+    points = table(mesh / "points", 3)[corners.reshape(-1, 3)]
+    areas = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]) / 2
+    owner, neighbour = (table(mesh / name, 1)[:, 0].astype(int) for name in ("owner", "neighbour"))
+    sums, faces = np.zeros((max(owner.max(), neighbour.max()) + 1, 3)), 4
+    np.add.at(sums, owner, points.mean(axis=1))
+    np.add.at(sums, neighbour, points[:len(neighbour)].mean(axis=1))
+    return areas, owner, neighbour, sums / faces
+
+
+def read_fluxes(case, num_inner, num_faces):
+    """0/phi, of all faces."""
+    text = (case / "0" / "phi").read_text()
+    inner, outer = text[text.index("internalField"):].split("boundaryField")
+
+    def values(part):
+        listed = re.search(r"nonuniform List<scalar>\s*\d*\s*\(([^)]*)\)", part)
+        return [float(w) for w in listed[1].split()] if listed else float(re.search(r"uniform (\S+);", part)[1])
+    fluxes = np.zeros(num_faces)
+    fluxes[:num_inner] = values(inner)
+    boundary = (case / "constant" / "polyMesh" / "boundary").read_text()
+    for name, count, start in re.findall(r"(\S+)\s*\{\s*type\s+\w+;\s*nFaces\s+(\d+);\s*startFace\s+(\d+);", boundary):
+        entries = re.search(rf"\s{name}\s*\{{(.*?)\}}", outer, re.S)[1]
+        fluxes[int(start):int(start) + int(count)] = values(entries)
+    return fluxes
+
+
+def velocities_of_fluxes(case):
+    """Each cell's velocity that fits the fluxes through its faces best, over SPEED; the middles of the cells; the largest
+    net flux of a cell over the largest flux of a face.
+
+    Made from 0/phi, since potentialFoam of Debian 12 writes wrong velocities: their y and z are not those of its fluxes.
+    """
+    areas, owner, neighbour, middles = read_triangles(case)
+    fluxes, n = read_fluxes(case, len(neighbour), len(areas)), len(neighbour)
+    size = np.linalg.norm(areas, axis=1)
+    matrix, right, net = np.zeros((len(middles), 3, 3)), np.zeros((len(middles), 3)), np.zeros(len(middles))
+    for cells, faces, sign in ((owner, slice(None), 1), (neighbour, slice(0, n), -1)):
+        np.add.at(matrix, cells, areas[faces, :, None] * areas[faces, None, :] / size[faces, None, None])
+        np.add.at(right, cells, areas[faces] * (fluxes / size)[faces, None])
+        np.add.at(net, cells, sign * fluxes[faces])
+    velocities = np.linalg.solve(matrix, right[:, :, None])[:, :, 0] / SPEED
+    return velocities, middles, abs(net).max() / abs(fluxes).max()
+
+
+def root_mean_square(differences):
+    """Of the lengths of vectors; nan is infinity."""
+    value = float(np.sqrt((differences ** 2).sum(axis=1).mean()))
+    return value if value == value else float("inf")
 
 
 def judge_check_mesh(case):
@@ -124,9 +176,17 @@ def judge_check_mesh(case):
 
 
 def judge_potential_foam(case):
-    _, problems = foam("potentialFoam", case)
-    error = None if problems else farthest_from_uniform(case / "0" / "U")
-    return problems or ([] if error < 1e-4 else [f"a cell's velocity is {error:.3g} off the exact one"])
+    """With the whole correction for non-orthogonality, which this grid bears (below 60 degrees)."""
+    schemes = case / "system" / "fvSchemes"
+    schemes.write_text(schemes.read_text().replace("limited corrected 0.5", "corrected"))
+    _, problems = foam("potentialFoam", case, "-writephi")
+    if problems:
+        return problems
+    velocities, _, net = velocities_of_fluxes(case)
+    off = root_mean_square(velocities - [1, 0, 0])
+    # Its potential has no slope at the inlet, where the exact one has: no scheme is exact in the cells there.
+    return [f"{name} is {value:.3g}" for name, value, bound in (("net flux of a cell", net, 1e-5), ("velocities' error", off, 0.1))
+            if not value < bound]
 
 
 def stop_after_50(case):
@@ -141,8 +201,8 @@ def judge_simple_foam(case):
     _, problems = foam("simpleFoam", case)
     if problems:
         return problems
-    error = farthest_from_uniform(case / "50" / "U")
-    return [] if error < 1e-2 else [f"a cell's velocity is {error:.3g} off the exact one"]
+    error = abs(table(case / "50" / "U", 3) / SPEED - [1, 0, 0]).max()
+    return [] if error < 2e-3 else [f"a cell's velocity is {error:.3g} off the exact one"]
 
 
 def edit_list(path, index, change):
@@ -294,8 +354,8 @@ def judge_calculix(path):
     off = max(abs(u - factor * x) for n, p in points.items() for u, factor, x in zip(moved[n], (1e-3, -2.5e-4, -2.5e-4), p))
     stress = max(abs(s - e) / 2e8 for cell in stresses for s, e in zip(cell, (2e8, 0, 0, 0, 0, 0)))
     # Its output has seven digits.
-    return [f"{name} {value:.3g}" for name, value, bound in (("displacement off by", off, 2e-9), ("stress off by", stress, 1e-6))
-            if not value < bound]
+    bounds = (("displacement off by", off, 1e-6 * 1e-3 * SIZE[0]), ("stress off by", stress, 1e-6))
+    return [f"{name} {value:.3g}" for name, value, bound in bounds if not value < bound]
 
 
 def turn_an_element(path):
@@ -352,10 +412,11 @@ def name_a_missing_point(path):
     raise AssertionError(f"{path}: the corners {corners} do not stand in it once")
 
 
-def judge_script(script):
+def judge_script(script, *options):
+    """One of ours that calls another program."""
     def judge(path):
-        status, text = run(sys.executable, ROOT / "scripts" / script, path, "--names", ",".join(AREAS))
-        return [] if status == 0 else [f"exit {status}: {text[-500:]}"]
+        status, text = run(sys.executable, ROOT / script, path, *options)
+        return [] if status == 0 else [f"exit {status}: {text[-1000:]}"]
     return judge
 
 
@@ -385,9 +446,9 @@ GATES = (
     Gate("checkMesh", "checkMesh", "openfoam", "foam", judge_check_mesh,
          {turn_a_face: "Open cells", throw_a_point: "negative volume|incorrectly oriented"}),
     Gate("potentialFoam", "potentialFoam", "openfoam", "foam", judge_potential_foam,
-         {turn_a_face: "off the exact one", throw_a_point: "off the exact one|signal|diverged", rename_a_patch: "lid"}),
+         {turn_a_face: "net flux", throw_a_point: "net flux", rename_a_patch: "lid"}),
     Gate("simpleFoam", "simpleFoam", "openfoam", "foam", judge_simple_foam,
-         {turn_a_face: "off the exact one", throw_a_point: "off the exact one|signal|diverged", rename_a_patch: "lid"}),
+         {turn_a_face: "off the exact one", throw_a_point: "ends with -8|off the exact one", rename_a_patch: "lid"}),
     Gate("FreeFem", "FreeFem++-nw", "freefem++", "box.mesh", judge_free_fem,
          {turn_a_tetrahedron: "badly oriented", lose_a_tetrahedron: "volume is 1.9",
           double_a_tetrahedron: "volume is 2|ends with", put_a_triangle_into_another_patch: "area1 is 0.9"}),
@@ -395,17 +456,25 @@ GATES = (
          {turn_an_element: "nonpositive jacobian", lose_a_loaded_face: "stress off by"}),
     Gate("cgnscheck", "cgnscheck", "cgns-convert", "box.cgns", judge_cgns,
          {lengthen_the_elements: "element connectivity", name_a_missing_point: "ERROR"}),
-    Gate("Gmsh", "gmsh", "gmsh", "box.msh", judge_script("gmsh_check.py"),
+    Gate("Gmsh", "gmsh", "gmsh", "box.msh", judge_script("scripts/gmsh_check.py", "--names", ",".join(AREAS)),
          {by_way_of_medit(turn_a_tetrahedron): "has negative volume",
           by_way_of_medit(double_a_tetrahedron): "1 duplicate element"}),
-    Gate("VTK", "vtkmodules", "python3-vtk9", "box.vtu", judge_script("vtk_check.py"),
+    Gate("VTK", "vtkmodules", "python3-vtk9", "box.vtu",
+         judge_script("scripts/vtk_check.py", "--names", ",".join(AREAS)),
          {by_way_of_medit(turn_a_tetrahedron): "1 tetrahedra have no positive volume"}),
+    Gate("check_mesh", "check_mesh.py", "python3-meshio, and the shared data", "box.vtu",
+         judge_script("tests/external/run_checker.py"),
+         {by_way_of_medit(turn_a_tetrahedron): "1 tetra cells flat or inverted",
+          by_way_of_medit(lose_a_tetrahedron): "4 boundary faces are not stored",
+          by_way_of_medit(double_a_tetrahedron): "faces shared by more than two cells"}),
 )
 
 
 def has(program):
     if program == "vtkmodules":
         return subprocess.run([sys.executable, "-c", "import vtkmodules.vtkIOXML"], capture_output=True).returncode == 0
+    if program == "check_mesh.py":
+        return (pathlib.Path(os.environ.get("DELFRONT_SHARED") or ROOT.parent / "shared") / "tools" / program).exists()
     return shutil.which(program) is not None
 
 
@@ -433,17 +502,41 @@ class Solvers(unittest.TestCase):
         return path
 
     def test_potentialFoam_flows_round_a_ball_in_a_far_field(self):
-        """Exact for an endless flow: 1.5 times the speed at the waist, none in front, undisturbed far away."""
+        """The starter files as they stand, against the exact flow round a ball: the far field lets the flow through."""
         if not has("potentialFoam"):
             self.skipTest("potentialFoam is not installed (Debian openfoam; scripts/setup --peers)")
         (self.folder / "ball.stl").write_text(ball_surface(3))
-        delfront("mesh", self.folder / "ball.stl", "--farfield", "sphere:5c", "-o", f"{self.folder / 'ball'}/", "--solver",
-                 "openfoam")
-        self.assertEqual(foam("potentialFoam", self.folder / "ball")[1], [])
-        speeds = sorted(sum(c * c for c in u) ** 0.5 / SPEED for u in read_vectors(self.folder / "ball" / "0" / "U"))
-        self.assertAlmostEqual(speeds[-1], 1.5, delta=0.1)
-        self.assertLess(speeds[0], 0.5)
-        self.assertAlmostEqual(speeds[len(speeds) // 2], 1, delta=0.05)
+        case = self.folder / "ball"
+        delfront("mesh", self.folder / "ball.stl", "--farfield", "sphere:5c", "-o", f"{case}/", "--solver", "openfoam")
+        self.assertEqual(foam("potentialFoam", case, "-writephi")[1], [])
+        velocities, x, net = velocities_of_fluxes(case)
+        r = np.linalg.norm(x, axis=1)[:, None]
+        exact = (1 + 0.5 / r ** 3) * np.array([[1, 0, 0]]) - 1.5 * x[:, :1] * x / r ** 5
+        self.assertLess(net, 1e-3)
+        self.assertLess(root_mean_square(velocities - exact), 0.15)
+        self.assertAlmostEqual(np.median(np.linalg.norm(velocities, axis=1)), 1, delta=0.02)
+
+    def test_starter_files_run_as_they_stand(self):
+        """Turbulent between walls, and what the files are without any kind: everything a wall, nothing moves."""
+        if not has("simpleFoam"):
+            self.skipTest("simpleFoam is not installed (Debian openfoam; scripts/setup --peers)")
+        sides = ("ymin", "ymax", "zmin", "zmax")
+        for kinds, fastest in (({"xmin": "inlet", "xmax": "outlet", **dict.fromkeys(sides, "wall")}, 2 * SPEED), ({}, 0)):
+            with self.subTest(kinds):
+                make_box(self.folder, kinds)
+                case = self.folder / "foam"
+                start = (case / "0" / "U").read_text()
+                self.assertEqual(foam("potentialFoam", case)[1], [])
+                (case / "0" / "U").write_text(start)
+                stop_after_50(case)
+                text, problems = foam("simpleFoam", case)
+                self.assertEqual(problems, [])
+                self.assertEqual("kOmegaSST" in text, bool(kinds))
+                ended = max((f for f in case.iterdir() if f.name.isdigit()), key=lambda f: int(f.name))  # 50, or at rest
+                if kinds:
+                    speeds = np.linalg.norm(table(ended / "U", 3), axis=1)
+                    self.assertTrue(0.8 * SPEED < speeds.max() < fastest, speeds.max())
+                shutil.rmtree(case)
 
     @unittest.skipUnless(IS_LONG, "only with --long")
     def test_simpleFoam_runs_on_the_ahmed_example(self):
@@ -452,22 +545,26 @@ class Solvers(unittest.TestCase):
             self.skipTest("simpleFoam is not installed (Debian openfoam; scripts/setup --peers)")
         case = self.ahmed_case()
         self.assertEqual(judge_check_mesh(case), [])
-        self.assertEqual(foam("potentialFoam", case)[1], [])
+        start = (case / "0" / "U").read_text()
+        self.assertEqual(foam("potentialFoam", case, "-writephi")[1], [])
+        self.assertLess(velocities_of_fluxes(case)[2], 1e-2)
+        (case / "0" / "U").write_text(start)
+        (case / "0" / "phi").unlink()
         stop_after_50(case)
-        text, problems = foam("simpleFoam", case)
+        text, problems = foam("simpleFoam", case)  # from rest
         self.assertEqual(problems, [])
         residuals = {name: [float(r) for r in re.findall(rf"Solving for {name}, Initial residual = (\S+),", text)]
                      for name in ("Ux", "p", "k", "omega")}
         print({name: values[-1] for name, values in residuals.items()})
         for name, values in residuals.items():
             self.assertGreaterEqual(len(values), 50, name)
-            self.assertLess(values[-1], 0.05, name)  # of 1 at the start
-        continuity = re.findall(r"sum local = (\S+), global = (\S+),", text)[-1]
-        print("continuity", continuity)
-        self.assertLess(abs(float(continuity[1])), 1e-4)
-        fastest = max(sum(c * c for c in u) ** 0.5 for u in read_vectors(case / "50" / "U"))
-        print("fastest", fastest)
-        self.assertLess(fastest, 2.5 * SPEED)
+            self.assertLess(values[-1], 0.1, name)  # all begin with 1
+        continuity = re.findall(r"sum local = \S+, global = (\S+),", text)
+        self.assertLess(abs(float(continuity[-1])), 1e-3)
+        speeds = np.linalg.norm(table(case / "50" / "U", 3), axis=1)
+        print(f"continuity {continuity[-1]}, fastest {speeds.max():.3g} m/s, median {np.median(speeds):.3g} m/s")
+        self.assertLess(speeds.max(), 2.5 * SPEED)
+        self.assertGreater(np.median(speeds), 0.7 * SPEED)
 
     def ahmed_case(self):
         """The example as its page has it: the job's paths are relative to its folder."""
