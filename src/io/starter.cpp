@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <unordered_map>
 
 #include "delfront/errors.hpp"
 #include "io/foam_case.hpp"
@@ -32,6 +33,70 @@ Point area_vector(const Mesh& mesh, std::span<const VertexId> corners) {
     sum = sum + cross(mesh.points[corners[k]] - a, mesh.points[corners[k + 1]] - a);
   return sum;
 }
+
+/// The faces of a group (in the plane: lines), each to be found by its vertices.
+class FacesOfGroup {
+ public:
+  FacesOfGroup(const Mesh& mesh, GroupId group) {
+    for (const CellBlock& block : mesh.blocks) {
+      if (dimension(block.type) != mesh.dimension - 1) continue;
+      for (std::size_t cell = 0; cell < block.group.size(); ++cell) {
+        if (block.group[cell] != group) continue;
+        Face face{{block[cell].begin(), block[cell].end()}, area_vector(mesh, block[cell])};
+        std::sort(face.corners.begin(), face.corners.end());
+        by_first_corner_.emplace(face.corners.front().index(), faces_.size());
+        faces_.push_back(std::move(face));
+      }
+    }
+  }
+
+  double total_area() const {
+    double sum = 0;
+    for (const Face& face : faces_) sum += length(face.area);
+    return sum;
+  }
+
+  /// Sum of the area vectors, each turned towards its cell; one whose cell is a polyhedron, from outward as it is
+  /// stored.
+  Point inward_area(const Mesh& mesh) const {
+    std::vector<int> signs(faces_.size(), -1);
+    for (const CellBlock& block : mesh.blocks)
+      if (dimension(block.type) == mesh.dimension && block.type != CellType::polyhedron)
+        for (std::size_t cell = 0; cell < block.size(); ++cell) look_at_cell(mesh, block[cell], signs);
+    Point sum;
+    for (std::size_t f = 0; f < faces_.size(); ++f) sum = sum + static_cast<double>(signs[f]) * faces_[f].area;
+    return sum;
+  }
+
+ private:
+  struct Face {
+    std::vector<VertexId> corners;  // sorted
+    Point area;
+  };
+
+  static Point middle(const Mesh& mesh, std::span<const VertexId> corners) {
+    Point sum;
+    for (VertexId v : corners) sum = sum + mesh.points[v];
+    return (1 / static_cast<double>(corners.size())) * sum;
+  }
+
+  void look_at_cell(const Mesh& mesh, std::span<const VertexId> cell, std::vector<int>& signs) const {
+    for (VertexId v : cell) {
+      const auto [begin, end] = by_first_corner_.equal_range(v.index());
+      for (auto it = begin; it != end; ++it) {
+        const Face& face = faces_[it->second];
+        const bool is_of_cell = std::all_of(face.corners.begin(), face.corners.end(), [&](VertexId corner) {
+          return std::find(cell.begin(), cell.end(), corner) != cell.end();
+        });
+        if (is_of_cell)
+          signs[it->second] = dot(middle(mesh, cell) - middle(mesh, face.corners), face.area) > 0 ? 1 : -1;
+      }
+    }
+  }
+
+  std::vector<Face> faces_;
+  std::unordered_multimap<std::size_t, std::size_t> by_first_corner_;
+};
 
 std::string read_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -125,25 +190,13 @@ StarterFiles start_openfoam(const Mesh& mesh, const std::string& path, Context& 
 }  // namespace
 
 Point inward_direction(const Mesh& mesh, GroupId group) {
-  Point area, middle_of_group, middle;
-  std::size_t num_corners = 0;
-  for (const CellBlock& block : mesh.blocks) {
-    if (dimension(block.type) != mesh.dimension - 1) continue;
-    for (std::size_t cell = 0; cell < block.group.size(); ++cell) {
-      if (block.group[cell] != group) continue;
-      area = area + area_vector(mesh, block[cell]);
-      for (VertexId v : block[cell]) middle_of_group = middle_of_group + mesh.points[v];
-      num_corners += block[cell].size();
-    }
-  }
-  for (const Point& p : mesh.points) middle = middle + p;
-  const double length = std::sqrt(dot(area, area));
-  if (num_corners == 0 || !(length > 0)) return {1, 0, 0};
-  const Point out = (1.0 / static_cast<double>(num_corners)) * middle_of_group -
-                    (1.0 / static_cast<double>(mesh.points.size())) * middle;
-  Point inward = ((dot(out, area) > 0 ? -1 : 1) / length) * area;
+  const FacesOfGroup faces(mesh, group);
+  const Point area = faces.inward_area(mesh);
+  const double size = length(area);
+  if (!(size > 1e-6 * faces.total_area())) return {1, 0, 0};
+  Point inward = (1 / size) * area;
   for (int k = 0; k < 3; ++k) inward[k] = std::round(inward[k] * 1e6) / 1e6 + 0.0;  // no -0
-  return dot(inward, inward) > 0.5 ? inward : Point{1, 0, 0};
+  return inward;
 }
 
 std::string wall_note(const StarterBoundary& boundary, const char* comment) {

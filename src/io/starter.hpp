@@ -34,9 +34,9 @@ inline constexpr double kViscosityRatio = 10;  // eddy over molecular
 
 /// @brief The mean direction into the grid of the faces (in the plane: lines) of a group, to six digits.
 ///
-/// Their orientation is not relied on: files may have turned it. What points away from the middle of the grid is
-/// outward.
+/// Their orientation is not relied on, as files may have turned it: each face's cell tells where the grid is.
 /// @return {1, 0, 0} where they have no mean direction, as on a whole sphere
+/// @par Cost  one look at each cell
 Point inward_direction(const Mesh& mesh, GroupId group);
 
 /// @brief "  % note" or "  // note" on a boundary that is a wall because nothing else is known; "" on others.

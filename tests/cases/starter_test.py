@@ -106,6 +106,10 @@ class Su2(case.Case):
         self.assertEqual(su2_list(settings["MARKER_INLET"])[9:], ["0", "1", "0"])
         self.assertEqual(settings["INC_INLET_TYPE"], "VELOCITY_INLET, VELOCITY_INLET")
 
+    def test_the_way_in_from_a_body_is_away_from_it(self):
+        settings = self.check_names_each_marker_once(self.make("--farfield", "sphere:5c", kinds={"xmin": "inlet"}))
+        self.assertEqual(su2_list(settings["MARKER_INLET"])[3:], ["-1", "0", "0"])
+
     def test_a_far_field_makes_it_compressible(self):
         settings = self.check_names_each_marker_once(self.make("--farfield", "sphere:5c", kinds={}))
         self.assertEqual((settings["SOLVER"], settings["MARKER_FAR"]), ("EULER", "( farfield )"))
