@@ -48,6 +48,9 @@ std::unique_ptr<Command> make_view_command(CLI::App& app);
 /// @return names of the formats that can be read (or written), one a line with their extensions
 std::string format_list();
 
+/// @brief "starter files  a, b" and "kept  c", where there are any.
+void print_starter_files(const StarterFiles& starter);
+
 /// @brief Text to a file, or to stdout for "-". @throws IoError
 void write_json(const std::string& path, const std::string& text);
 

@@ -49,6 +49,11 @@ std::string format_list() {
   return result;
 }
 
+void print_starter_files(const StarterFiles& starter) {
+  if (!starter.written.empty()) fmt::print("starter files  {}\n", fmt::join(starter.written, ", "));
+  if (!starter.kept.empty()) fmt::print("kept           {}\n", fmt::join(starter.kept, ", "));
+}
+
 void write_json(const std::string& path, const std::string& text) {
   if (path == "-")
     fmt::print("{}", text);

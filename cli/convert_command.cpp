@@ -32,6 +32,9 @@ class ConvertCommand : public Command {
     app->add_flag("--ascii", is_ascii_, "write text instead of binary, where the format has both");
     app->add_flag("--compress", is_compressed_, "VTU and VTP: compressed");
     app->add_option("--msh-version", msh_version_, "version of MSH files; by default 4.1")->type_name("V");
+    app->add_option("--solver", solver_,
+                    "starter files for this solver beside OUT, naming every boundary; files that exist are kept")
+        ->type_name("su2|openfoam");
     add_common_flags();
   }
 
@@ -41,17 +44,21 @@ class ConvertCommand : public Command {
     prepare(context, terminal);
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};
     std::vector<std::string> changes;
-    const Mesh mesh = convert_file(in_, out_, {.from = from_, .to = to_, .how = how}, changes, context);
+    StarterFiles starter;
+    const Mesh mesh =
+        convert_file(in_, out_, {.from = from_, .to = to_, .how = how, .solver = solver_}, changes, context, &starter);
     terminal.clear_bar();
     for (const std::string& change : changes) terminal.log(LogLevel::warning, change);
+    for (const std::string& note : starter.notes) terminal.log(LogLevel::warning, note);
     if (terminal.verbosity() < 0) return 0;
     fmt::print("{}", mesh_facts_text(mesh));
     fmt::print("written        {}\n", out_);
+    print_starter_files(starter);
     return 0;
   }
 
  private:
-  std::string in_, out_, from_, to_, msh_version_;
+  std::string in_, out_, from_, to_, msh_version_, solver_;
   bool is_ascii_ = false, is_compressed_ = false;
 };
 

@@ -299,6 +299,7 @@ class JobCommand : public Command {
       fmt::print("units          the box in {}, as written; all other lengths in the input's unit, {:g} m\n",
                  options.output.units, result.scale.metres_per_unit);
     if (!result.files_written.empty()) fmt::print("written        {}\n", fmt::join(result.files_written, ", "));
+    print_starter_files(result.starter);
     if (!options.output.report.empty()) fmt::print("report         {}\n", options.output.report);
     if (!result.defects_file.empty()) fmt::print("defects        {}\n", result.defects_file);
   }

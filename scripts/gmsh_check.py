@@ -4,8 +4,8 @@
 
     gmsh_check.py GRID.msh [--names inlet,outlet,body]
 
-Gmsh reads the file, checks it and writes it again as MSH 2.2 text; what it wrote says which elements and physical
-names it understood. Exit: 0 passed, 1 not, 77 Gmsh is not installed (Debian package gmsh).
+Gmsh checks the file (cells turned over, points and elements that stand in it twice), and writes it again as MSH 2.2
+text: what it wrote says which elements and physical names it understood. Exit: 0 passed, 1 not, 77 Gmsh is not installed (Debian package gmsh).
 """
 
 import argparse
@@ -43,6 +43,17 @@ def dimension_of(element):
     return {1: 1, 2: 2, 3: 2, 15: 0}.get(element, 3)
 
 
+def gmsh(*arguments):
+    """Exit status and what it said."""
+    environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
+    run = subprocess.run(["gmsh", *arguments, "-nopopup", "-v", "4"], capture_output=True, text=True, env=environment)
+    return run.returncode, run.stdout + run.stderr
+
+
+def find_problems(text):
+    return [line.strip() for line in text.splitlines() if line.strip().startswith(("Error", "Warning"))]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("grid")
@@ -53,15 +64,16 @@ def main():
         return 77
     with tempfile.TemporaryDirectory() as folder:
         again = os.path.join(folder, "again.msh")
-        command = ["gmsh", options.grid, "-check", "-save", "-format", "msh2", "-o", again, "-nopopup", "-v", "3"]
-        environment = {k: v for k, v in os.environ.items() if k != "DISPLAY"}
-        run = subprocess.run(command, capture_output=True, text=True, env=environment)
-        output = run.stdout + run.stderr
-        problems = [line for line in output.splitlines() if line.startswith(("Error", "Warning"))]
-        if run.returncode or not os.path.exists(again):
-            print(output)
+        # -save in the same run would take the place of -check.
+        status, checked = gmsh(options.grid, "-check")
+        written, output = gmsh(options.grid, "-save", "-format", "msh2", "-o", again)
+        problems = find_problems(checked) + [p for p in find_problems(output) if p not in checked]
+        if written or not os.path.exists(again) or "Done checking" not in checked:
+            print(checked + output)
             print(f"gmsh_check: Gmsh cannot open {options.grid}")
             return 1
+        if status and not problems:
+            problems.append(f"gmsh -check ends with {status}")
         names, counts = read_msh2(again)
     totals = collections.Counter()
     for (element, _), count in counts.items():

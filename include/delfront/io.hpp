@@ -46,6 +46,28 @@ Mesh read_mesh(const std::string& path, Context& context, const std::string& for
 std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, Context& context,
                                     const WriteOptions& options = {}, const std::string& format = "");
 
+/// @brief Solvers that write_starter_files knows, each by the name of the format it reads: su2, openfoam.
+const std::vector<std::string>& starter_solvers();
+
+/// @brief What write_starter_files did.
+struct StarterFiles {
+  std::vector<std::string> written, kept;  ///< paths; kept: they were there before, and nothing was changed in them
+  std::vector<std::string> notes;          ///< sentences: what was taken for granted, what kept files do not name
+};
+
+/// @brief Files with which a solver starts on the grid that stands at `path`, each naming every boundary as it does.
+///
+/// SU2: NAME.cfg beside NAME.su2. OpenFOAM: 0/, constant/ and system/ for potentialFoam and simpleFoam. The condition
+/// of a boundary follows from its kind; one whose kind says none (none given, patch, cyclic, interface) is a wall,
+/// with a comment there. All values are in SI: coordinates are metres. A file that exists is never changed, except a
+/// file in system/ that is still as write_mesh made it.
+/// @param mesh  as it was written to `path`
+/// @throws UsageError  another solver, or `path` holds no grid for this one
+/// @throws InputError  no such grid at `path`
+/// @throws IoError     cannot write; files written before stay, each whole
+StarterFiles write_starter_files(const Mesh& mesh, const std::string& path, const std::string& solver, Context& context,
+                                 const std::string& format = "");
+
 /// @brief Throws IoError now, not after an hour, where `path` cannot be written later. Leaves nothing behind.
 void check_writable(const std::string& path);
 

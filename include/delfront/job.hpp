@@ -13,6 +13,7 @@
 #include "delfront/cad.hpp"
 #include "delfront/context.hpp"
 #include "delfront/generate.hpp"
+#include "delfront/io.hpp"
 #include "delfront/model.hpp"
 #include "delfront/options.hpp"
 
@@ -107,6 +108,7 @@ struct JobResult {
   std::vector<std::string> failed_gates;   ///< sentences
   std::vector<Finding> gate_failures;      ///< their places
   std::vector<std::string> files_written;  ///< grids, each complete
+  StarterFiles starter;                    ///< of options.output.solver
   std::vector<std::string> name_changes;   ///< names that a format could not hold, as sentences
   std::vector<std::string> warnings;       ///< everything logged at LogLevel::warning, and the report's warnings
   std::string defects_file;                ///< written where something was wrong; else empty

@@ -251,6 +251,7 @@ struct OutputOptions {
   bool compress = false;    ///< VTK XML: zlib
   bool sizes = false;       ///< the wanted size at each point, as the field "h"
   std::string msh_version;  ///< "", "2.2" or "4.1"
+  std::string solver;       ///< "", or su2 openfoam: starter files beside the outputs of that format
 };
 
 /// @brief The whole job: the job file's tree, field for field.

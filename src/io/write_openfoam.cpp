@@ -4,23 +4,20 @@
 // baffle, that is two patches NAME_master (the side that the stored faces' normals leave) and NAME_slave on the same
 // points. The mesh is written into a hidden folder in constant/ that replaces polyMesh when it is whole.
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <tuple>
 
 #include "delfront/errors.hpp"
 #include "io/cells.hpp"
+#include "io/foam_case.hpp"
 #include "io/foam_faces.hpp"
 #include "io/formats.hpp"
 #include "io/names.hpp"
 #include "io/output.hpp"
 
 namespace delfront {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -42,13 +39,6 @@ std::string patch_type(const Group& group, std::vector<std::string>& notes) {
                     "createPatch",
                     group.name));
   return "patch";
-}
-
-std::string header(const char* kind, const std::string& location, const char* object, const std::string& note = "") {
-  return fmt::format(
-      "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {};\n{}"
-      "    location    \"{}\";\n    object      {};\n}}\n\n",
-      kind, note.empty() ? "" : fmt::format("    note        \"{}\";\n", note), location, object);
 }
 
 /// One file of the mesh, checked to its close.
@@ -132,7 +122,7 @@ class FoamWriter {
   std::size_t num_faces() const { return faces_.internal.size() + faces_.boundary.size(); }
 
   void write_points(const std::string& folder, const std::string& shown) {
-    write_file(folder, "points", shown, header("vectorField", kLocation, "points"), [&](Output& out) {
+    write_file(folder, "points", shown, foam_header("vectorField", kLocation, "points"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", mesh_.points.size()));
       for (const Point& p : mesh_.points) {
         out.character('(');
@@ -149,7 +139,7 @@ class FoamWriter {
   }
 
   void write_faces(const std::string& folder, const std::string& shown) {
-    write_file(folder, "faces", shown, header("faceList", kLocation, "faces"), [&](Output& out) {
+    write_file(folder, "faces", shown, foam_header("faceList", kLocation, "faces"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", num_faces()));
       for_each([&](const FoamFace& face) {
         const std::vector<VertexId> corners = faces_.corners(face);
@@ -169,7 +159,7 @@ class FoamWriter {
   void write_labels(const std::string& folder, const std::string& shown, const char* name, Function&& label, bool all) {
     const std::string note = fmt::format("nPoints: {} nCells: {} nFaces: {} nInternalFaces: {}", mesh_.points.size(),
                                          faces_.num_cells(), num_faces(), faces_.internal.size());
-    write_file(folder, name, shown, header("labelList", kLocation, name, note), [&](Output& out) {
+    write_file(folder, name, shown, foam_header("labelList", kLocation, name, note), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", all ? num_faces() : faces_.internal.size()));
       const auto take = [&](const FoamFace& face) {
         out.integer(label(face));
@@ -183,7 +173,7 @@ class FoamWriter {
   }
 
   void write_boundary(const std::string& folder, const std::string& shown) {
-    write_file(folder, "boundary", shown, header("polyBoundaryMesh", kLocation, "boundary"), [&](Output& out) {
+    write_file(folder, "boundary", shown, foam_header("polyBoundaryMesh", kLocation, "boundary"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", patches_.size()));
       for (const Patch& patch : patches_)
         out.text(
@@ -212,7 +202,7 @@ class FoamWriter {
           zones[static_cast<std::size_t>(group)].push_back(faces_.first_cell[b] + cell);
     for (const auto& zone : zones) num_zones += !zone.empty();
     if (num_zones < 2) return;
-    write_file(folder, "cellZones", shown, header("regIOobject", kLocation, "cellZones"), [&](Output& out) {
+    write_file(folder, "cellZones", shown, foam_header("regIOobject", kLocation, "cellZones"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", num_zones));
       for (std::size_t group = 0; group < zones.size(); ++group) {
         if (zones[group].empty()) continue;
@@ -231,7 +221,7 @@ class FoamWriter {
       if (const std::uint32_t group = faces_.internal[i].group; group != FoamFace::kNone) zones[group].push_back(i);
     for (const auto& zone : zones) num_zones += !zone.empty();
     if (num_zones == 0) return;
-    write_file(folder, "faceZones", shown, header("regIOobject", kLocation, "faceZones"), [&](Output& out) {
+    write_file(folder, "faceZones", shown, foam_header("regIOobject", kLocation, "faceZones"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", num_zones));
       for (std::size_t group = 0; group < zones.size(); ++group) {
         if (zones[group].empty()) continue;
@@ -253,58 +243,6 @@ class FoamWriter {
   std::vector<Patch> patches_;
 };
 
-/// Makes folders that are missing, and removes those it made (if still empty) unless kept.
-class CaseFolders {
- public:
-  ~CaseFolders() {
-    std::error_code ignored;
-    for (auto it = made_.rbegin(); it != made_.rend(); ++it) fs::remove(*it, ignored);  // fails where it is not empty
-  }
-  void make(const std::string& folder) {
-    std::error_code error;
-    if (fs::is_directory(folder, error)) return;
-    if (!fs::create_directory(folder, error))
-      throw IoError(fmt::format("cannot make folder {}: {}", folder, error ? error.message() : "it is a file"));
-    made_.push_back(folder);
-  }
-  void keep() { made_.clear(); }
-
- private:
-  std::vector<std::string> made_;
-};
-
-constexpr const char* kControl =
-    "application     potentialFoam;\nstartFrom       startTime;\nstartTime       0;\nstopAt          endTime;\n"
-    "endTime         1;\ndeltaT          1;\nwriteControl    timeStep;\nwriteInterval   1;\nwriteFormat     ascii;\n"
-    "writePrecision  8;\n";
-constexpr const char* kSchemes =
-    "ddtSchemes { default steadyState; }\ngradSchemes { default Gauss linear; }\n"
-    "divSchemes { default none; div(phi,U) bounded Gauss linear; div(div(phi,U)) Gauss linear; }\n"
-    "laplacianSchemes { default Gauss linear corrected; }\ninterpolationSchemes { default linear; }\n"
-    "snGradSchemes { default corrected; }\n";
-constexpr const char* kSolution =
-    "solvers\n{\n    Phi { solver GAMG; smoother DIC; tolerance 1e-06; relTol 0.01; }\n"
-    "    p { $Phi; }\n}\npotentialFlow { nNonOrthogonalCorrectors 10; }\n";
-
-/// What checkMesh and potentialFoam need to start, each only where the case has no file of that name.
-void write_system(const std::string& folder, CaseFolders& folders) {
-  const std::string system = folder + "/system";
-  folders.make(system);
-  const std::pair<const char*, const char*> files[] = {
-      {"controlDict", kControl}, {"fvSchemes", kSchemes}, {"fvSolution", kSolution}};
-  for (const auto& [name, text] : files) {
-    const std::string path = system + "/" + name;
-    std::error_code error;
-    if (fs::exists(path, error)) continue;
-    Replacement replacement(path);
-    Output out(replacement.temporary(), path);
-    out.text(header("dictionary", "system", name));
-    out.text(text);
-    out.close();
-    replacement.commit();
-  }
-}
-
 }  // namespace
 
 void write_openfoam(const Mesh& mesh, const std::string& path, Context& context, std::vector<std::string>& notes) {
@@ -322,7 +260,7 @@ void write_openfoam(const Mesh& mesh, const std::string& path, Context& context,
   Replacement replacement(folder + "/constant/polyMesh", Replacement::Of::folder);
   writer.write(replacement.temporary(), folder + "/constant/polyMesh");
   replacement.commit();
-  write_system(folder, folders);
+  write_minimal_system(folder, folders);
   folders.keep();
 }
 

@@ -8,6 +8,7 @@
 #include "io/formats.hpp"
 #include "io/names.hpp"
 #include "io/output.hpp"
+#include "io/starter.hpp"
 
 namespace delfront {
 
@@ -62,6 +63,7 @@ void write_points(Output& out, const Mesh& mesh) {
 struct Marker {
   std::string name;
   std::vector<std::pair<const CellBlock*, std::size_t>> faces;
+  GroupId group = {};  // invalid: of faces without one
 };
 
 void write_markers(Output& out, const std::vector<Marker>& markers) {
@@ -98,12 +100,12 @@ std::vector<Marker> make_markers(const Mesh& mesh, std::vector<std::string>& not
     const Group& group = mesh.groups[GroupId(i)];
     num_regions += group.dimension == mesh.dimension;
     if (group.dimension == mesh.dimension - 1 && !group.two_sided)
-      markers.push_back({names[i], std::move(by_group[i].faces)});
+      markers.push_back({names[i], std::move(by_group[i].faces), GroupId(i)});
   }
   if (Marker& rest = by_group.back(); !rest.faces.empty()) {
     notes.push_back(
         fmt::format("SU2: {} boundary faces without a patch are in the marker unnamed_boundary", rest.faces.size()));
-    markers.push_back({"unnamed_boundary", std::move(rest.faces)});
+    markers.push_back({"unnamed_boundary", std::move(rest.faces), {}});
   }
   if (num_inner > 0) notes.push_back(fmt::format("SU2: {} faces of two-sided inner patches are left out", num_inner));
   if (num_regions > 1)
@@ -112,6 +114,19 @@ std::vector<Marker> make_markers(const Mesh& mesh, std::vector<std::string>& not
 }
 
 }  // namespace
+
+std::vector<StarterBoundary> su2_boundaries(const Mesh& mesh) {
+  std::vector<std::string> said_by_the_writer;
+  const std::vector<Marker> markers = make_markers(mesh, said_by_the_writer);
+  std::vector<StarterBoundary> boundaries(markers.size());
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    const GroupId group = markers[i].group;
+    boundaries[i].name = markers[i].name;
+    if (group.is_valid()) boundaries[i].kind = mesh.groups[group].kind;
+    if (boundaries[i].kind == "inlet") boundaries[i].inward = inward_direction(mesh, group);
+  }
+  return boundaries;
+}
 
 void write_su2(const Mesh& mesh, Output& out, const WriteOptions&, Context& context, std::vector<std::string>& notes) {
   context.check_limits();

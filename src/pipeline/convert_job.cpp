@@ -2,7 +2,9 @@
 #include "pipeline/convert_job.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "delfront/errors.hpp"
@@ -15,9 +17,21 @@ void check_write_options(const WriteOptions& options) {
     throw UsageError(fmt::format("version {} of MSH (--msh-version): allowed are 2.2 and 4.1", options.version));
 }
 
+/// Before the input is read.
+static void check_starter_solver(const ConvertOptions& options, const std::string& out) {
+  if (options.solver.empty()) return;
+  const std::vector<std::string>& known = starter_solvers();
+  if (std::find(known.begin(), known.end(), options.solver) == known.end())
+    throw UsageError(fmt::format("--solver {}: allowed are {}", options.solver, fmt::join(known, ", ")));
+  if (format_of(out, options.to, true).name != options.solver)
+    throw UsageError(fmt::format("--solver {}: {} is not a grid of that solver; give OUT as {}", options.solver, out,
+                                 options.solver == "openfoam" ? "a name ending in /, an OpenFOAM case" : "grid.su2"));
+}
+
 Mesh convert_file(const std::string& in, const std::string& out, const ConvertOptions& options,
-                  std::vector<std::string>& changes, Context& context) {
+                  std::vector<std::string>& changes, Context& context, StarterFiles* starter) {
   check_write_options(options.how);
+  check_starter_solver(options, out);
   std::error_code ignored;
   if (std::filesystem::equivalent(in, out, ignored))
     throw UsageError(fmt::format("{} is the input and would be overwritten; give OUT another name", out));
@@ -28,6 +42,9 @@ Mesh convert_file(const std::string& in, const std::string& out, const ConvertOp
         out));
   Mesh mesh = read_mesh(in, context, options.from);
   changes = write_mesh(mesh, out, context, options.how, options.to);
+  if (options.solver.empty()) return mesh;
+  StarterFiles made = write_starter_files(mesh, out, options.solver, context, options.to);
+  if (starter) *starter = std::move(made);
   return mesh;
 }
 

@@ -101,6 +101,20 @@ void check_domain(const Options& options) {
     throw usage_error(options, "domain.enclose.h", "there is no far field; add e.g. --farfield box:10c");
 }
 
+/// Starter files stand beside a grid that the solver reads.
+void check_solver(const Options& options) {
+  const std::string& solver = options.output.solver;
+  if (solver.empty()) return;
+  const auto& files = options.output.files;
+  if (std::any_of(files.begin(), files.end(),
+                  [&](const std::string& path) { return format_of(path, options.output.format, true).name == solver; }))
+    return;
+  throw usage_error(options, "output.solver",
+                    solver == "openfoam"
+                        ? "openfoam needs an output that is an OpenFOAM case, a name ending in /: -o case/"
+                        : "su2 needs an output that SU2 reads: -o grid.su2");
+}
+
 void check_files(const Options& options, const JobExtras& extras) {
   std::size_t smooth = 0;
   for (std::size_t i = 0; i < options.input.files.size(); ++i) {
@@ -130,6 +144,7 @@ void check_files(const Options& options, const JobExtras& extras) {
       check_holds_cells(options, path);
       check_writable(path);
     });
+  if (writes_grid(options)) check_solver(options);
   for (const auto& [key, path] :
        {std::pair{"output.report", options.output.report}, {"output.defects", options.output.defects}})
     if (!path.empty()) with_place(options, key, [&path = path] { check_writable(path); });

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "delfront/errors.hpp"
+#include "delfront/io.hpp"
 #include "pipeline/boundary_options.hpp"
 #include "pipeline/option_rows.hpp"
 #include "pipeline/quantities.hpp"
@@ -247,6 +248,11 @@ std::vector<OptionRow> build_table() {
       [](auto& o) -> auto& { return o.output.sizes; }));
   add(text_row("output.msh_version", "--msh-version", "V", "version of MSH files; by default 4.1",
                [](auto& o) -> auto& { return o.output.msh_version; }, {"2.2", "4.1"}));
+  add(text_row(
+      "output.solver", "--solver", "su2|openfoam",
+      "starter files for this solver beside its grid, naming every boundary: NAME.cfg, or 0/, constant/ and system/ of "
+      "the case; files that exist are kept",
+      [](auto& o) -> auto& { return o.output.solver; }, starter_solvers()));
   add(text_row(
       "output.report", "--report", "FILE", "report of the run as JSON, written also when the run fails",
       [](auto& o) -> auto& { return o.output.report; }));

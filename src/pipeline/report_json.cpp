@@ -421,6 +421,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"estimate", result.estimate ? to_json(*result.estimate) : Json(nullptr)},
       {"failed_gates", result.failed_gates},
       {"files_written", result.files_written},
+      {"starter_files", {{"written", result.starter.written}, {"kept", result.starter.kept}}},
       {"defects_file", result.defects_file},
       {"partial_file", result.partial_file},
       {"name_changes", result.name_changes},

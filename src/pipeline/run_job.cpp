@@ -289,6 +289,24 @@ void rescale(const Options& options, Mesh& mesh) {
   for (Point& p : mesh.points) p = factor * p;
 }
 
+/// Beside each output of that solver's format; what they assume is a warning.
+void write_starters(Run& run, const std::string& path) {
+  const OutputOptions& output = run.options.output;
+  if (output.solver.empty() || format_of(path, output.format, true).name != output.solver) return;
+  StarterFiles made = write_starter_files(run.result.mesh, path, output.solver, run.context, output.format);
+  const std::string& unit = output.units.empty() ? run.options.input.units : output.units;
+  if (const double metres = metres_per_unit(unit); metres > 0 && metres != 1)
+    made.notes.push_back(
+        fmt::format("{}: coordinates are in {}, and the solver takes them as metres; rescale them with "
+                    "--output-units m",
+                    path, unit));
+  for (const std::string& note : made.notes) run.context.warn(note);
+  StarterFiles& all = run.result.starter;
+  std::move(made.written.begin(), made.written.end(), std::back_inserter(all.written));
+  std::move(made.kept.begin(), made.kept.end(), std::back_inserter(all.kept));
+  std::move(made.notes.begin(), made.notes.end(), std::back_inserter(all.notes));
+}
+
 void write_outputs(Run& run) {
   const StageTimer timer(run.context, "write");
   const OutputOptions& output = run.options.output;
@@ -299,6 +317,7 @@ void write_outputs(Run& run) {
     for (std::string& change : write_mesh(run.result.mesh, output.files[i], run.context, how, output.format))
       run.result.name_changes.push_back(fmt::format("{}: {}", output.files[i], change));
     run.result.files_written.push_back(output.files[i]);
+    write_starters(run, output.files[i]);
   }
   run.context.progress("write", output.files.size(), output.files.size(), "files");
 }
@@ -365,6 +384,7 @@ void finish(Run& run, Outcome outcome) {
 /// Goes as far as a grid would, and writes sizes or nothing.
 void prepare_survey(Run& run) {
   run.options.stop_after = run.kind == JobKind::estimate ? "improve" : "";
+  run.options.output.solver.clear();
   if (run.options.volume.method == "none") run.options.volume.method = VolumeOptions().method;
 }
 

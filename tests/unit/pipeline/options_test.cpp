@@ -330,6 +330,7 @@ Options unusual_options() {
       {"output.compress", "true"},
       {"output.sizes", "true"},
       {"output.msh_version", "2.2"},
+      {"output.solver", "su2"},
       {"output.report", "/r.json"},
       {"output.defects", "/d.vtp"},
       {"output.require", "min_dihedral > 8"},
