@@ -248,7 +248,8 @@ std::vector<OptionRow> build_table() {
   add(text_row("output.msh_version", "--msh-version", "V", "version of MSH files; by default 4.1",
                [](auto& o) -> auto& { return o.output.msh_version; }, {"2.2", "4.1"}));
   add(text_row(
-      "output.report", "--report", "FILE", "report of the run as JSON, written also when the run fails",
+      "output.report", "--report", "FILE",
+      "report of the run as JSON, written also when the run fails; NAME.html: a page to read, with NAME.json beside it",
       [](auto& o) -> auto& { return o.output.report; }));
   add(text_row(
       "output.defects", "--defects", "FILE", "where defects are shown (.vtp); by default beside the first output",
