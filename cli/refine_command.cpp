@@ -62,7 +62,9 @@ class RefineCommand : public Command {
     app->add_option("--feature-angle", options_.feature_angle_deg,
                     "angle between facets from which an edge is a feature; by default 40 degrees")
         ->type_name("DEG");
-    app->add_option("--report", report_, "what was done, as JSON; - for stdout; NAME.html: a page to read, with NAME.json beside it")->type_name("FILE");
+    app->add_option("--report", report_,
+                    "what was done, as JSON; - for stdout; NAME.html: a page to read, with NAME.json beside it")
+        ->type_name("FILE");
     app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
     app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");
     app->add_flag("--ascii", is_ascii_, "write text instead of binary, where the format has both");

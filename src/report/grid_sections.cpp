@@ -102,19 +102,33 @@ std::string worst_of_all(const Json& r) {
                    rows + "</table></div></details>";
 }
 
-std::string group_rows(const Json& groups, const std::string& what) {
+bool has_colours(const Json& groups) {
+  return std::any_of(groups.begin(), groups.end(), [](const Json& group) { return !text_of(group, "colour").empty(); });
+}
+
+/// @param has_colour  whether there is a column for it
+std::string group_rows(const Json& groups, const std::string& what, bool has_colour) {
   std::string rows;
   for (const Json& group : groups) {
     const std::string colour = text_of(group, "colour"), kind = text_of(group, "kind");
     const bool is_plain = colour.size() == 6 && colour.find_first_not_of("0123456789ABCDEFabcdef") == std::string::npos;
+    const std::string swatch =
+        is_plain ? fmt::format("<span class=\"swatch\" style=\"background:#{0}\"></span>{0}", colour) : "–";
     rows += fmt::format(
-        "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"num\">{}</td><td "
-        "class=\"num\">{}</td></tr>",
+        "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td>{}<td class=\"num\">{}</td><td class=\"num\">{}</td></tr>",
         html(text_of(group, "name")), what, kind.empty() ? "–" : html(kind),
-        is_plain ? fmt::format("<span class=\"swatch\" style=\"background:#{0}\"></span>{0}", colour) : "–",
-        count_text(part_of(group, "num_cells")), number_text(part_of(group, "measure")));
+        has_colour ? "<td>" + swatch + "</td>" : "", count_text(part_of(group, "num_cells")),
+        number_text(part_of(group, "measure")));
   }
   return rows;
+}
+
+std::string groups_table(const std::string& rows, bool has_colour) {
+  if (rows.empty()) return "";
+  return fmt::format(
+      "<div class=\"wide\"><table><tr><th>Name</th><th></th><th>Kind</th>{}<th class=\"num\">Facets or cells</th>"
+      "<th class=\"num\">Area, volume or length</th></tr>{}</table></div>",
+      has_colour ? "<th>Colour in CAD</th>" : "", rows);
 }
 
 }  // namespace
@@ -170,19 +184,17 @@ std::string quality_section(const Json& r) {
 }
 
 std::string groups_section(const Json& r) {
-  const bool is_planar = !part_of(measures_of(r), "min_angle").is_null() && part_of(r, "regions").empty() &&
-                         part_of(part_of(r, "surface"), "num_triangles") == 0;
-  std::string rows = is_planar
-                         ? group_rows(part_of(r, "curves"), "boundary") + group_rows(part_of(r, "boundaries"), "region")
-                         : group_rows(part_of(r, "boundaries"), "boundary") +
-                               group_rows(part_of(r, "regions"), "region") + group_rows(part_of(r, "curves"), "curve");
-  rows += group_rows(part_of(r, "points"), "points");
-  if (rows.empty()) return "";
-  return "<section class=\"long\"><h2>Boundaries and regions</h2><div "
-         "class=\"wide\"><table><tr><th>Name</th><th></th><th>Kind</th>"
-         "<th>Colour in CAD</th><th class=\"num\">Facets or cells</th><th class=\"num\">Area, volume or "
-         "length</th></tr>" +
-         rows + "</table></div></section>";
+  const bool is_planar = part_of(r, "regions").empty() && part_of(part_of(r, "surface"), "num_triangles") == 0 &&
+                         !part_of(r, "curves").empty();
+  const bool has_colour = has_colours(part_of(r, "boundaries"));
+  const auto rows = [&](const char* key, const char* what) { return group_rows(part_of(r, key), what, has_colour); };
+  std::string text = groups_table((is_planar ? rows("curves", "boundary") : "") +
+                                      rows("boundaries", is_planar ? "region" : "boundary") + rows("regions", "region"),
+                                  has_colour);
+  const std::string rest =
+      groups_table((is_planar ? "" : rows("curves", "curve")) + rows("points", "points"), has_colour);
+  if (!rest.empty()) text += "<details><summary>Curves and points</summary>" + rest + "</details>";
+  return text.empty() ? "" : "<section class=\"long\"><h2>Boundaries and regions</h2>" + text + "</section>";
 }
 
 }  // namespace delfront

@@ -22,6 +22,8 @@ static std::string title_of(const Json& r) {
   if (title.empty())  // none could be read
     for (const Json& file : part_of(part_of(part_of(r, "options"), "input"), "files")) add(file.get<std::string>());
   if (title.empty()) add(text_of(r, "input"));
+  if (title.empty())  // geometry of the job file itself
+    for (const Json& file : part_of(part_of(part_of(r, "options"), "output"), "files")) add(file.get<std::string>());
   return title.empty() ? "delfront" : title;
 }
 

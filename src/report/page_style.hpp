@@ -39,7 +39,7 @@ th { text-align: left; font-weight: 600; font-size: 12px; color: var(--faint); p
 td { padding: 3px 14px 3px 0; vertical-align: top; overflow-wrap: anywhere; border-bottom: 1px solid var(--line); }
 tr:last-child > td { border-bottom: none; }
 .num { text-align: right; white-space: nowrap; }
-td.name { font-weight: 600; }
+td.name { font-weight: 600; } td.kind { font-weight: 600; overflow-wrap: normal; white-space: nowrap; }
 table.facts { max-width: 480px; }
 .wide { overflow-x: auto; }
 .meter { min-width: 120px; width: 45%; }

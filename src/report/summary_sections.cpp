@@ -2,7 +2,7 @@
 // What is read first: how it ended, the figures, what is wrong, warnings.
 #include <fmt/format.h>
 
-#include <vector>
+#include <initializer_list>
 
 #include "base/with_commas.hpp"
 #include "report/sections.hpp"
@@ -155,19 +155,19 @@ std::string finding_row(const Json& finding) {
   constexpr std::size_t kPlaces = 5;
   const std::string severity = text_of(finding, "severity"), remedy = text_of(finding, "remedy");
   return fmt::format(
-      "<tr><td><span class=\"word {}\">{}</span></td><td class=\"name\">{}</td><td "
+      "<tr><td><span class=\"word {}\">{}</span></td><td class=\"kind\">{}</td><td "
       "class=\"num\">{}</td><td>{}{}{}</td></tr>",
       html(severity), html(severity), html(text_of(finding, "kind")), count_text(part_of(finding, "count")),
       html(text_of(finding, "message")), remedy.empty() ? "" : "<p class=\"note\">Try: " + html(remedy) + "</p>",
       places_list(part_of(finding, "places"), kPlaces));
 }
 
-std::string findings_table(const Json& findings, bool errors_only) {
+/// @param severities  those shown, in this order
+std::string findings_table(const Json& findings, std::initializer_list<const char*> severities) {
   std::string rows;
-  for (const char* severity : {"error", "warning", "note"})
+  for (const char* severity : severities)
     for (const Json& finding : findings)
-      if (text_of(finding, "severity") == severity && (!errors_only || text_of(finding, "severity") == "error"))
-        rows += finding_row(finding);
+      if (text_of(finding, "severity") == severity) rows += finding_row(finding);
   if (rows.empty()) return "";
   return "<div class=\"wide\"><table><tr><th></th><th>What</th><th class=\"num\">How many</th><th>Where</th></tr>" +
          rows + "</table></div>";
@@ -237,9 +237,9 @@ std::string tiles_section(const Json& r) {
 
 std::string problems_section(const Json& r) {
   constexpr std::size_t kPlaces = 20;
-  std::string text = places_list(part_of(r, "places"), kPlaces);
-  text += findings_table(part_of(part_of(r, "surface"), "findings"), true);
-  text += findings_table(part_of(r, "grid_findings"), true);
+  std::string text = findings_table(part_of(part_of(r, "surface"), "findings"), {"error"});
+  text += findings_table(part_of(r, "grid_findings"), {"error", "warning"});
+  if (text.empty()) text = places_list(part_of(r, "places"), kPlaces);  // else they are those of the findings
   for (const Json& gate : part_of(r, "failed_gates"))
     text += "<p>Gate not met: " + html(gate.get<std::string>()) + "</p>";
   for (const auto& [key, what] :
@@ -273,14 +273,14 @@ std::string surface_section(const Json& r) {
           fmt::format("{}, {}, {}", yes_no("is_closed"), yes_no("is_manifold"), yes_no("can_bound_volume"))) +
       row("Components", count_text(part_of(surface, "components").size())) +
       row("Area", number_text(part_of(surface, "area"))) +
-      row("Volume inside", number_text(part_of(surface, "volume"))) +
+      row("Volume inside", part_of(surface, "is_closed") == true ? number_text(part_of(surface, "volume")) : "–") +
       row("Edges", number_text(part_of(surface, "min_edge")) + " to " + number_text(part_of(surface, "max_edge"))) +
       row("Smallest angle of a triangle", number_text(part_of(surface, "min_angle")) + "°") +
       row("Smallest angle between neighbours", number_text(part_of(surface, "min_dihedral")) + "°");
   if (count_of(surface, "num_triangles") == 0) rows.clear();
   std::string text = rows.empty() ? "" : "<table class=\"facts\">" + rows + "</table>";
-  text += findings_table(part_of(surface, "findings"), false);
-  return "<section><h2>Surface that was gridded</h2>" + text + "</section>";
+  text += findings_table(part_of(surface, "findings"), {"warning", "note"});  // errors stand above
+  return text.empty() ? "" : "<section><h2>The surface</h2>" + text + "</section>";
 }
 
 }  // namespace delfront
