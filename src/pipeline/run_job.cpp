@@ -510,6 +510,9 @@ void write_report(const Options& options, const std::string& command, JobResult&
       put_error(result, e.exit_code, e.what());
     else
       result.warnings.push_back(fmt::format("no report: {}", e.what()));
+  } catch (const std::exception& e) {  // memory, or a mistake of ours
+    if (result.exit_code == ExitCode::done)
+      put_error(result, ExitCode::internal_error, fmt::format("the report could not be made: {}", e.what()));
   }
 }
 

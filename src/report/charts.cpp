@@ -72,6 +72,7 @@ bool is_bad(double low, double high, const Marks& marks) {
 
 std::string histogram_svg(const Json& histogram, const std::string& unit, const Marks& marks) {
   const auto counts = part_of(histogram, "counts").get<std::vector<std::size_t>>();
+  if (!part_of(histogram, "low").is_number() || !part_of(histogram, "high").is_number()) return "";  // not finite
   const double low = part_of(histogram, "low").get<double>(), high = part_of(histogram, "high").get<double>();
   const std::size_t bins = counts.size();
   if (bins == 0) return "";

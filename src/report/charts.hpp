@@ -9,7 +9,7 @@ namespace delfront {
 
 /// @brief What a histogram marks: values on the good side of `goal`, or those between two.
 struct Marks {
-  std::optional<double> at_least, at_most;  ///< bars with nothing on the good side are shown as bad
+  std::optional<double> at_least = {}, at_most = {};  ///< bars with nothing on the good side are shown as bad
 };
 
 /// @brief A histogram of the schema ({low, high, counts}) as SVG; the counts on a scale of powers of ten, so that a
