@@ -351,13 +351,20 @@ void judge_grid(Run& run) {
   run.result.gate_failures = find_gate_failures(run.result.mesh, gates, quiet);
 }
 
+/// A page says of a grid that it is valid; that is looked at.
+void look_at_grid(Run& run) {
+  if (!is_page_name(run.options.output.report)) return;
+  const StageTimer timer(run.context, "check");
+  run.result.grid_findings = check(run.result.mesh);
+}
+
 void finish(Run& run, Outcome outcome) {
   run.result.report = std::move(outcome.report);
   run.result.mesh = std::move(outcome.mesh);
   run.context.check_cells(run.result.report.quality.num_cells);
   judge_grid(run);
   if (writes_grid(run.options)) write_outputs(run);
-  if (is_page_name(run.options.output.report)) run.result.grid_findings = check(run.result.mesh);
+  look_at_grid(run);
   if (run.result.failed_gates.empty()) return;
   run.result.exit_code = ExitCode::gate_not_met;
   run.result.error = fmt::format("the grid {}: {}",

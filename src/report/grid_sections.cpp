@@ -73,15 +73,13 @@ std::string card(std::size_t rank, const Json& worst, const Json& measure, const
       names.empty() ? "" : "<br>on " + html(names));
 }
 
-/// Measures of cells, and of faces with their two cells, whose gate is not met.
+/// Measures of cells, and of faces with their two cells, whose gate is not met; then the one that all are judged by.
 std::vector<std::string> drawn_measures(const Json& r) {
   std::vector<std::string> result;
-  if (const std::string main = main_measure(r); !main.empty()) result.push_back(main);
-  for (const Json& gate : part_of(r, "failed_gates"))
-    for (const auto& [name, measure] : measures_of(r).items())
-      if (gate.get<std::string>().find(name) != std::string::npos && name != "edge_length" &&
-          std::find(result.begin(), result.end(), name) == result.end())
-        result.push_back(name);
+  for (const auto& [name, measure] : measures_of(r).items())
+    if (misses_gate(r, name) && name != "edge_length") result.push_back(name);  // that is of points
+  const std::string main = main_measure(r);
+  if (!main.empty() && std::find(result.begin(), result.end(), main) == result.end()) result.push_back(main);
   return result;
 }
 
@@ -132,6 +130,12 @@ std::string groups_table(const std::string& rows, bool has_colour) {
 }
 
 }  // namespace
+
+bool misses_gate(const Json& r, const std::string& measure) {
+  const Json& gates = part_of(r, "failed_gates");
+  return std::any_of(gates.begin(), gates.end(),
+                     [&](const Json& gate) { return gate.get<std::string>().starts_with(measure + " "); });
+}
 
 std::string main_measure(const Json& r) {
   for (const char* name : {"min_dihedral", "min_angle"})

@@ -17,6 +17,8 @@ std::string tiles_section(const Json& r);
 std::string problems_section(const Json& r);
 /// @brief Warnings, and what was changed on the way: names, turned facets, divided boundary, bridges.
 std::string warnings_section(const Json& r);
+/// @return whether a gate on this measure is not met
+bool misses_gate(const Json& r, const std::string& measure);
 /// @brief The measure that cells are judged by: min_dihedral, in the plane min_angle; empty: there is no grid.
 std::string main_measure(const Json& r);
 /// @brief The ten worst cells, drawn; those of measures whose gate is not met too.

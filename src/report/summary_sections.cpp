@@ -106,6 +106,7 @@ std::string goal_tile(const Json& r, const char* measure, const char* end, const
                       bool is_least) {
   const Json& value = part_of(measure_of(r, measure), end);
   if (!value.is_number()) return "";
+  if (misses_gate(r, measure)) return tile(number_text(value) + "°", std::string(what) + " (gate not met)", "bad");
   if (!goal.is_number()) return tile(number_text(value) + "°", what);
   const bool is_met = is_least ? value.get<double>() >= goal.get<double>() : value.get<double>() <= goal.get<double>();
   return tile(number_text(value) + "°", fmt::format("{} (goal {:g}°)", what, goal.get<double>()),

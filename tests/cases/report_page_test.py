@@ -206,6 +206,7 @@ class Failing(case.Case):
         self.assertIn(report["failed_gates"][0], page.text(kind="verdict"))
         worst = report["quality"]["measures"]["max_nonortho"]["worst"][0]
         self.assertIn(f"cells {worst['cells'][0]} {worst['cells'][1]}", page.text(kind="cells"))
+        self.assertIn("largest non-orthogonality (gate not met)", page.text(kind="bad"))
 
     def test_no_input_and_a_limit(self):
         page, _ = run_with_page(self, 3, "mesh", "nowhere.stl", "-o", "a.vtu")
