@@ -2,6 +2,7 @@
 #include "pipeline/patch_colours.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace delfront {
 
@@ -24,13 +25,24 @@ PatchesBefore::PatchesBefore(const Model& model) : patch_of_triangle(model.patch
 }
 
 ColoursByName colours_after(const PatchesBefore& before, const Model& model, const ColoursByName& colours) {
-  ColoursByName result;
-  for (std::size_t t = 0; t < before.patch_of_triangle.size(); ++t) {
-    const auto old = colours.find(before.names[before.patch_of_triangle[TriangleId(t)].index()]);
-    add_colour(model.patches[model.patch_of_triangle[TriangleId(t)]].name, old == colours.end() ? "" : old->second,
-               result);
+  if (colours.empty()) return {};
+  std::vector<std::string> old_colour;  // by patch as it was
+  for (const std::string& name : before.names) {
+    const auto it = colours.find(name);
+    old_colour.push_back(it == colours.end() ? "" : it->second);
   }
-  std::erase_if(result, [](const auto& entry) { return entry.second.empty(); });
+  std::vector<std::optional<std::string>> new_colour(model.patches.size());
+  for (std::size_t t = 0; t < before.patch_of_triangle.size(); ++t) {
+    const std::string& colour = old_colour[before.patch_of_triangle[TriangleId(t)].index()];
+    std::optional<std::string>& now = new_colour[model.patch_of_triangle[TriangleId(t)].index()];
+    if (!now)
+      now = colour;
+    else if (*now != colour)
+      now = "";
+  }
+  ColoursByName result;
+  for (std::size_t p = 0; p < new_colour.size(); ++p)
+    if (new_colour[p] && !new_colour[p]->empty()) result.emplace(model.patches[PatchId(p)].name, *new_colour[p]);
   return result;
 }
 
