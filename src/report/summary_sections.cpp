@@ -2,6 +2,7 @@
 // What is read first: how it ended, the figures, what is wrong, warnings.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <initializer_list>
 
 #include "base/with_commas.hpp"
@@ -140,16 +141,18 @@ std::string quality_tiles(const Json& r) {
   return tiles;
 }
 
-std::string places_list(const Json& places, std::size_t most) {
+/// @param all  how many there are; the report may hold the first of them only
+std::string places_list(const Json& places, std::size_t all, std::size_t most) {
   std::string rows;
-  for (std::size_t i = 0; i < std::min(most, places.size()); ++i) {
+  const std::size_t shown = std::min(most, places.size());
+  for (std::size_t i = 0; i < shown; ++i) {
     const std::string ids = ids_text(part_of(places[i], "ids"));
     rows += fmt::format("<li class=\"mono\">at {}{}</li>", point_text(part_of(places[i], "at")),
                         ids.empty() ? "" : ", number " + ids);
   }
   if (rows.empty()) return "";
-  return "<ul>" + rows +
-         (places.size() > most ? fmt::format("<li>and {} more</li>", with_commas(places.size() - most)) : "") + "</ul>";
+  const std::size_t rest = std::max(all, places.size()) - shown;
+  return "<ul>" + rows + (rest ? fmt::format("<li>and {} more</li>", with_commas(rest)) : "") + "</ul>";
 }
 
 std::string finding_row(const Json& finding) {
@@ -160,7 +163,7 @@ std::string finding_row(const Json& finding) {
       "class=\"num\">{}</td><td>{}{}{}</td></tr>",
       html(severity), html(severity), html(text_of(finding, "kind")), count_text(part_of(finding, "count")),
       html(text_of(finding, "message")), remedy.empty() ? "" : "<p class=\"note\">Try: " + html(remedy) + "</p>",
-      places_list(part_of(finding, "places"), kPlaces));
+      places_list(part_of(finding, "places"), count_of(finding, "count"), kPlaces));
 }
 
 /// @param severities  those shown, in this order
@@ -240,7 +243,7 @@ std::string problems_section(const Json& r) {
   constexpr std::size_t kPlaces = 20;
   std::string text = findings_table(part_of(part_of(r, "surface"), "findings"), {"error"});
   text += findings_table(part_of(r, "grid_findings"), {"error", "warning"});
-  if (text.empty()) text = places_list(part_of(r, "places"), kPlaces);  // else they are those of the findings
+  if (text.empty()) text = places_list(part_of(r, "places"), 0, kPlaces);  // else they are those of the findings
   for (const Json& gate : part_of(r, "failed_gates"))
     text += "<p>Gate not met: " + html(gate.get<std::string>()) + "</p>";
   for (const auto& [key, what] :

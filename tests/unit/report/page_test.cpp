@@ -56,11 +56,12 @@ TEST(ReportPage, a_report_of_which_little_is_known_makes_a_page) {
 TEST(ReportPage, a_grid_with_findings_is_not_called_valid) {
   const char* report =
       R"({"outcome": "done", "exit_code": 0, "error": null, "quality": {"num_cells": 5, "num_points": 8, "measures": {}},
-          "grid_findings": [{"kind": "flat_cell", "severity": "error", "count": 1, "message": "cell 3 is flat", "remedy": "",
+          "grid_findings": [{"kind": "flat_cell", "severity": "error", "count": 7, "message": "cell 3 is flat", "remedy": "",
           "places": [{"at": [1, 2, 3], "ids": [3]}]}]})";
   const std::string page = report_page(report, "", Mesh());
   EXPECT_NE(page.find("The grid is not valid: 5 cells"), std::string::npos);
   EXPECT_NE(page.find("at (1, 2, 3), number 3"), std::string::npos);
+  EXPECT_NE(page.find("and 6 more"), std::string::npos);
   EXPECT_EQ(page.find("Valid grid"), std::string::npos);
 }
 
