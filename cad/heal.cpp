@@ -213,10 +213,26 @@ void attempt(Part& part, const char* what, const std::function<void()>& work) {
 
 }  // namespace
 
-void heal(Part& part, const CadOptions& options, const Say& say) {
-  check_corners(part);
-  note_loose_edges(part);
-  attempt(part, "curves in space", [&] { BRepLib::BuildCurves3d(part.shape); });
+namespace {
+
+/// By which power of ten a part is mended larger: OpenCASCADE works to 1e-7, whatever it is asked for.
+double working_scale(double diagonal) {
+  constexpr double kSmall = 0.01, kUsual = 1;
+  double scale = 1;
+  if (diagonal > 0 && diagonal < kSmall)
+    while (scale * diagonal < kUsual) scale *= 10;
+  return scale;
+}
+
+/// Notes from the given ones on say lengths of the part as it is mended.
+void unscale_notes(std::vector<CadNote>& notes, std::size_t first, double scale) {
+  for (std::size_t i = first; i < notes.size(); ++i) {
+    notes[i].at = notes[i].at / scale;
+    notes[i].message += fmt::format(" (mended {0:g} times as large: its lengths and places are times {0:g})", scale);
+  }
+}
+
+void mend(Part& part, const CadOptions& options, const Say& say) {
   if (options.heals) {
     attempt(part, "tiny edges", [&] { remove_tiny_edges(part); });
     attempt(part, "parameter curves", [&] { drop_wrong_parameter_curves(part); });
@@ -227,6 +243,24 @@ void heal(Part& part, const CadOptions& options, const Say& say) {
   if (options.heals) attempt(part, "solids inside out", [&] { turn_inverted_solids(part); });
   attempt(part, "parameters along edges",
           [&] { BRepLib::SameParameter(part.shape, 1e-7 * std::max(part.diagonal, 1e-30)); });
+}
+
+}  // namespace
+
+void heal(Part& part, const CadOptions& options, const Say& say) {
+  check_corners(part);
+  note_loose_edges(part);
+  attempt(part, "curves in space", [&] { BRepLib::BuildCurves3d(part.shape); });
+  const double scale = working_scale(part.diagonal);
+  if (scale == 1) return mend(part, options, say);
+  const std::size_t repairs = part.report.repairs.size(), suspicious = part.report.suspicious.size();
+  CadOptions scaled = options;
+  scaled.tolerance *= scale;
+  part.scale(scale);
+  mend(part, scaled, say);
+  part.scale(1 / scale);
+  unscale_notes(part.report.repairs, repairs, scale);
+  unscale_notes(part.report.suspicious, suspicious, scale);
 }
 
 }  // namespace delfront::cad

@@ -2,6 +2,7 @@
 #include "part.hpp"
 
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Transform.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <Message_ProgressIndicator.hxx>
@@ -15,6 +16,7 @@
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <cmath>
+#include <gp_Trsf.hxx>
 
 namespace delfront::cad {
 
@@ -62,6 +64,14 @@ void Part::become(const TopoDS_Shape& after, const std::function<TopTools_ListOf
   shape = after;
   faces.follow(shape, images);
   solids.follow(shape, images);
+}
+
+void Part::scale(double factor) {
+  gp_Trsf larger;
+  larger.SetScaleFactor(factor);
+  BRepBuilderAPI_Transform transform(shape, larger, true);
+  become(transform.Shape(), [&](const TopoDS_Shape& before) { return transform.Modified(before); });
+  diagonal *= factor;
 }
 
 namespace {

@@ -57,6 +57,8 @@ struct Part {
 
   /// @brief A new shape, and what became of faces and solids on the way.
   void become(const TopoDS_Shape& after, const std::function<TopTools_ListOfShape(const TopoDS_Shape&)>& images);
+  /// @brief The same, so many times as large.
+  void scale(double factor);
 };
 
 /// @brief A sentence of progress; throws Stopped where the caller says so.

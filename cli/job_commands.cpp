@@ -298,8 +298,8 @@ class JobCommand : public Command {
     if (quality.num_cells) fmt::print(" ({} bytes a cell)", result.peak_memory / quality.num_cells);
     fmt::print("\n");
     if (!options.output.units.empty())
-      fmt::print("units          the box in {}, as written; all other lengths in {}\n", options.output.units,
-                 options.input.units);
+      fmt::print("units          the box in {}, as written; all other lengths in the input's unit, {:g} m\n",
+                 options.output.units, result.scale.metres_per_unit);
     if (!result.files_written.empty()) fmt::print("written        {}\n", fmt::join(result.files_written, ", "));
     if (!options.output.report.empty())
       fmt::print("report         {}\n", fmt::join(report_files(options.output.report), ", "));

@@ -6,13 +6,11 @@
 
 --check: exit 1 where the page that is there is another one.
 """
-import argparse
-import os
 import re
 import subprocess
 import sys
 
-from man_page import OPTION, ROOT, commands_of, help_of
+from program_help import commands_of, entries, help_of, write_page
 
 TABLE = re.compile(r"^(# )?(\[\[?)([\w.]+)\]\]?$")
 KEY = re.compile(r"^(# )?(\w+) = (.*?) +# (.*)$")
@@ -86,18 +84,13 @@ def flag_row(flag, said):
 
 def flags_of(lines):
     """Options of a command's help by their headings: {heading: [(flags, text), …]}."""
-    groups, heading, i = {}, "Options", 0
-    while i < len(lines):
-        title, option = TITLE.match(lines[i]), OPTION.match(lines[i])
+    groups, heading = {}, "Options"
+    for flags, line in entries(lines):
+        title = None if flags else TITLE.match(line)
         if title:
             heading = title[1]
-        elif option:
-            said = option[2] or ""
-            while i + 1 < len(lines) and lines[i + 1].startswith(" " * 20):
-                i += 1
-                said += " " + lines[i].strip()
-            groups.setdefault(heading, []).append(flag_row(option[1], said.strip()))
-        i += 1
+        elif flags:
+            groups.setdefault(heading, []).append(flag_row(flags, line))
     return groups
 
 
@@ -117,23 +110,5 @@ def page(program):
     return "\n".join(out).rstrip() + "\n"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--delfront", default=os.path.join(ROOT, "build", "release", "delfront"))
-    parser.add_argument("--out", default=os.path.join(ROOT, "docs", "options.md"))
-    parser.add_argument("--check", action="store_true")
-    options = parser.parse_args()
-    made = page(options.delfront)
-    if options.check:
-        with open(options.out, encoding="utf-8") as file:
-            if file.read() != made:
-                print(f"options_page.py: {options.out} is out of date; run scripts/options_page.py", file=sys.stderr)
-                return 1
-        return 0
-    with open(options.out, "w", encoding="utf-8") as file:
-        file.write(made)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(write_page(__doc__, page, "docs", "options.md"))

@@ -137,4 +137,9 @@ void write_geometry(const GeometryText& geometry, const std::string& path);
 /// open
 Brep build_brep(const GeometryText& geometry, const std::string& file);
 
+/// @brief Where the file is all there is: each reversed shape must be a hole in a body (a box round its box is enough).
+/// @param file  for messages
+/// @throws InputError  one lies in no body: file, line, what to try
+void check_holes(const GeometryText& geometry, const std::string& file);
+
 }  // namespace delfront

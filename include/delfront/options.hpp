@@ -57,7 +57,7 @@ struct DomainOptions {
 /// @brief A boundary of the grid, and what it is made of; one way to select, at most.
 struct BoundaryOptions {
   std::string name;                       ///< table key: boundaries.<name>
-  std::string select;                     ///< name pattern with * and ?; empty: the patch of that name
+  std::vector<std::string> select;        ///< name patterns with * and ?; empty: the patch of that name
   std::string kind;                       ///< wall patch inlet outlet farfield symmetry empty wedge cyclic interface
   std::string set_at = {};                ///< as Options::set_at
   std::vector<std::uint32_t> faces = {};  ///< of smooth geometry, from 1 as `info` counts them
@@ -67,6 +67,8 @@ struct BoundaryOptions {
   std::vector<Point> near = {};           ///< faces of smooth geometry that are nearest to these places
   std::string expression = {};            ///< faces of smooth geometry where this formula in x, y, z is true all over
 
+  /// @brief What patches are selected by: patterns of names.
+  std::vector<std::string> patterns() const { return select.empty() ? std::vector{name} : select; }
   /// @brief Whether faces of smooth geometry are selected, rather than patches by name.
   bool selects_faces() const {
     return !faces.empty() || normal || !colours.empty() || box || !near.empty() || !expression.empty();

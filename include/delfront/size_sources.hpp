@@ -115,7 +115,7 @@ struct SourceFieldOptions {
   double growth = std::numeric_limits<double>::infinity();
   double time = 0;                                ///< for sources that move
   SourceSearch search = SourceSearch::automatic;  ///< changes the time, never a bit of a result
-  Box domain;  ///< of `lists`: where most places will lie; empty: the box of the sources, half as wide again
+  Box domain = {};  ///< of `lists`: where most places will lie; empty: the box of the sources, half as wide again
 };
 
 /// @brief The minimum over any number of sources (S3, S4, S5; eq. 3.14), exact, at a cost that grows like the logarithm

@@ -48,7 +48,8 @@ class ModelBuilder {
   Context& context_;
   Model model_;
   std::unordered_map<Point, VertexId, PointHash> welded_;
-  std::vector<VertexId> to_model_;                   // by point of the input being added
+  std::vector<VertexId> to_model_;  // by point of the input being added
+  PatchNames patch_names_;
   std::map<std::uint32_t, PatchId> patch_of_group_;  // of the input being added
   std::set<std::array<VertexId, 2>> curve_edges_;    // lower end first
   std::set<VertexId> is_corner_;
@@ -100,7 +101,7 @@ PatchId ModelBuilder::patch_for(const NamedMesh& input, GroupId group) {
   if (known != patch_of_group_.end()) return known->second;
   const bool has_group = group.is_valid() && group.index() < input.mesh.groups.size();
   const std::string given = has_group ? input.mesh.groups[group].name : std::string();
-  const std::string name = unused_patch_name(model_, given.empty() ? input.stem : given);
+  const std::string name = patch_names_.take(given.empty() ? input.stem : given);
   if (!given.empty() && name != given)
     context_.log(LogLevel::info,
                  fmt::format("{}: patch '{}' is called '{}' here, as the name is taken", input.stem, given, name));
@@ -261,14 +262,20 @@ Model ModelBuilder::finish() {
 
 }  // namespace
 
+std::string PatchNames::take(const std::string& wanted) {
+  const auto [it, is_new] = next_number_.try_emplace(wanted, 2);
+  if (is_new) return wanted;
+  int& number = it->second;
+  while (true) {
+    std::string name = fmt::format("{}_{}", wanted, number++);
+    if (next_number_.try_emplace(name, 2).second) return name;
+  }
+}
+
 std::string unused_patch_name(const Model& model, const std::string& wanted) {
-  auto is_taken = [&](const std::string& name) {
-    return std::any_of(model.patches.begin(), model.patches.end(), [&](const Patch& p) { return p.name == name; });
-  };
-  if (!is_taken(wanted)) return wanted;
-  int number = 2;
-  while (is_taken(fmt::format("{}_{}", wanted, number))) ++number;
-  return fmt::format("{}_{}", wanted, number);
+  PatchNames names;
+  for (const Patch& patch : model.patches) names.take(patch.name);
+  return names.take(wanted);
 }
 
 Box Model::bounding_box() const {

@@ -15,30 +15,6 @@
 namespace delfront {
 namespace {
 
-constexpr int kBoxSamples = 16;  ///< each way over a face
-
-/// By samples of its faces, over the boxes of their borders.
-Box box_of(const Brep& brep) {
-  Box box;
-  for (const BrepFace& face : brep.faces) {
-    Box uv;
-    for (const auto& loop : face.loops)
-      for (const BrepUse& use : loop) {
-        const auto& range = brep.edges[use.edge].range;
-        for (int i = 0; i <= kBoxSamples; ++i) {
-          const Point2 p = use.curve->at(range[0] + (range[1] - range[0]) * i / kBoxSamples);
-          uv.add(Point{p.x, p.y, 0});
-          box.add(face.surface->at(p));
-        }
-      }
-    for (int i = 0; i <= kBoxSamples; ++i)
-      for (int j = 0; j <= kBoxSamples; ++j)
-        box.add(face.surface->at({uv.low.x + (uv.high.x - uv.low.x) * i / kBoxSamples,
-                                  uv.low.y + (uv.high.y - uv.low.y) * j / kBoxSamples}));
-  }
-  return box;
-}
-
 constexpr double kShare = 1e-9;  ///< of the diagonal: the tolerance where none is given
 constexpr int kSamples = 16;
 
@@ -64,7 +40,6 @@ class TextBuilder {
     for (const TextFace& face : text_.faces) at_line(face.line, "face", face.name, [&] { make_face(face); });
     for (const TextShape& shape : text_.shapes)
       at_line(shape.line, "shape", shape.name, [&] { append_brep(brep_, build_shape(shape)); });
-    check_holes();
     if (brep_.faces.empty())
       throw InputError(file_ + " has no faces: add a [[face]], or a [[shape]] such as type = \"sphere\", radius = 1");
     brep_.tolerance = text_.tolerance;
@@ -76,35 +51,6 @@ class TextBuilder {
   }
 
  private:
-  /// A reversed shape is a hole in a body: by boxes, one of the others is round it, or the faces together are.
-  void check_holes() const {
-    const auto& shapes = text_.shapes;
-    if (std::none_of(shapes.begin(), shapes.end(), [](const TextShape& shape) { return shape.reversed; })) return;
-    std::vector<Box> box;
-    std::size_t num_faces = brep_.faces.size();
-    for (const TextShape& shape : shapes) {
-      const Brep brep = build_shape(shape);
-      box.push_back(box_of(brep));
-      num_faces -= brep.faces.size();
-    }
-    Brep rest = brep_;
-    rest.faces.resize(num_faces);
-    const Box faces = box_of(rest);
-    for (std::size_t hole = 0; hole < shapes.size(); ++hole) {
-      bool is_inside = !shapes[hole].reversed || (num_faces > 0 && holds(faces, box[hole]));
-      for (std::size_t s = 0; s < shapes.size() && !is_inside; ++s)
-        is_inside = !shapes[s].reversed && holds(box[s], box[hole]);
-      if (is_inside) continue;
-      at_line(shapes[hole].line, "shape", shapes[hole].name, [] {
-        throw InputError("it is reversed, a hole, but lies in no body; leave out reversed, or put a body round it");
-      });
-    }
-  }
-  static bool holds(const Box& outer, const Box& inner) {
-    return inner.low.x >= outer.low.x && inner.low.y >= outer.low.y && inner.low.z >= outer.low.z &&
-           inner.high.x <= outer.high.x && inner.high.y <= outer.high.y && inner.high.z <= outer.high.z;
-  }
-
   using Names = std::map<std::string, std::size_t>;
 
   template <class Make>

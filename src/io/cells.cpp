@@ -139,12 +139,6 @@ GroupId TagGroups::by_marker(int dimension, std::int64_t marker) {
   return unmarked;
 }
 
-GroupId NamedPatches::operator()(std::string_view name) {
-  const auto [it, is_new] = groups_.try_emplace(std::string(name), mesh_.groups.size());
-  if (is_new) mesh_.groups.push_back({it->first, dimension_, "", false});
-  return it->second;
-}
-
 std::span<const std::array<int, 4>> local_faces(CellType type) {
   switch (type) {
     case CellType::tetrahedron:

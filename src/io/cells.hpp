@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -74,18 +73,6 @@ class TagGroups {
   std::array<std::map<std::int64_t, GroupId>, 4> groups_;
   std::array<GroupId, 4> unmarked_;
   std::array<Entry, 4> last_{};  // the one asked for last: tags come in runs
-};
-
-/// @brief Like mesh.add_group(dimension, name), for files with very many names.
-class NamedPatches {
- public:
-  explicit NamedPatches(Mesh& mesh, int dimension = 2) : mesh_(mesh), dimension_(dimension) {}
-  GroupId operator()(std::string_view name);
-
- private:
-  Mesh& mesh_;
-  int dimension_;
-  std::unordered_map<std::string, GroupId> groups_;
 };
 
 /// @brief Outward faces of a volume cell: calls `face(span)` for each.

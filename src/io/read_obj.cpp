@@ -11,6 +11,7 @@
 #include "io/cells.hpp"
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
+#include "mesh/named_groups.hpp"
 
 namespace delfront {
 
@@ -165,7 +166,7 @@ class ObjReader {
 
   void add_faces() {
     const std::size_t label = choose_label();
-    NamedPatches patches(mesh_);
+    NamedGroups patches(mesh_, 2);
     for (std::size_t i = 0; i < runs_.size(); ++i) {
       if (!has_faces(i)) continue;
       const GroupId group = patches(runs_[i].names[label]);
@@ -176,7 +177,7 @@ class ObjReader {
 
   void add_embedded() {
     const std::size_t label = choose_label();
-    NamedPatches curves(mesh_, 1), points(mesh_, 0);
+    NamedGroups curves(mesh_, 1), points(mesh_, 0);
     for (const auto& [is_line, vertices, names] : embedded_) {
       const auto named = std::find_if(names.begin(), names.end(), [](std::string_view name) { return !name.empty(); });
       const std::string_view name = !names[label].empty() || named == names.end() ? names[label] : *named;

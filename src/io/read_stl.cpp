@@ -10,6 +10,7 @@
 #include "io/cells.hpp"
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
+#include "mesh/named_groups.hpp"
 
 namespace delfront {
 
@@ -134,7 +135,7 @@ Mesh read_binary(std::string_view bytes, const std::string& path, Context& conte
 class TextReader {
  public:
   TextReader(std::string_view bytes, const std::string& path, Context& context)
-      : cursor_(bytes, path), context_(context), patches_(mesh_) {}
+      : cursor_(bytes, path), context_(context), patches_(mesh_, 2) {}
 
   Mesh read() {
     for (std::string_view word = cursor_.next(); !word.empty(); word = cursor_.next()) take(word);
@@ -214,7 +215,7 @@ class TextReader {
   Cursor cursor_;
   Context& context_;
   Mesh mesh_;
-  NamedPatches patches_;
+  NamedGroups patches_;
   GroupId group_;
   BadFacets bad_;
   std::array<Point, 3> corners_;

@@ -6,6 +6,7 @@
 
 #include "base/name_pattern.hpp"
 #include "delfront/errors.hpp"
+#include "mesh/named_groups.hpp"
 #include "pipeline/option_table.hpp"
 
 namespace delfront {
@@ -32,25 +33,29 @@ static void refuse_second_far_field(const std::vector<BoundaryOptions>& boundari
 
 constexpr std::size_t kKept = static_cast<std::size_t>(-1);  // no boundary selects the patch
 
+static UsageError no_such_patch(const BoundaryOptions& boundary, const std::string& pattern,
+                                const std::vector<std::string>& names) {
+  return UsageError(fmt::format("{}boundaries.{}: no patch is called '{}'{}; the input has: {}",
+                                boundary.set_at.empty() ? "" : boundary.set_at + ": ", boundary.name, pattern,
+                                did_you_mean(pattern, names), fmt::join(names, ", ")));
+}
+
 /// By patch, the last boundary that selects it.
 static std::vector<std::size_t> select_patches(const std::vector<BoundaryOptions>& boundaries, const Model& model,
                                                PatchId far_field) {
   std::vector<std::size_t> boundary_of(model.patches.size(), kKept);
   for (std::size_t b = 0; b < boundaries.size(); ++b) {
-    const std::string& pattern = boundaries[b].select.empty() ? boundaries[b].name : boundaries[b].select;
-    bool found = false;
-    for (std::size_t i = 0; i < model.patches.size(); ++i) {
-      const std::string& name = model.patches[PatchId(i)].name;
-      const bool is_far_field = PatchId(i) == far_field;
-      if (is_far_field ? name != pattern : !matches_pattern(name, pattern)) continue;
-      boundary_of[i] = b;
-      found = true;
+    for (const std::string& pattern : boundaries[b].patterns()) {
+      bool found = false;
+      for (std::size_t i = 0; i < model.patches.size(); ++i) {
+        const std::string& name = model.patches[PatchId(i)].name;
+        const bool is_far_field = PatchId(i) == far_field;
+        if (is_far_field ? name != pattern : !matches_pattern(name, pattern)) continue;
+        boundary_of[i] = b;
+        found = true;
+      }
+      if (!found) throw no_such_patch(boundaries[b], pattern, patch_names(model));
     }
-    if (found) continue;
-    const std::vector<std::string> names = patch_names(model);
-    throw UsageError(fmt::format("{}boundaries.{}: no patch is called '{}'{}; the input has: {}",
-                                 boundaries[b].set_at.empty() ? "" : boundaries[b].set_at + ": ", boundaries[b].name,
-                                 pattern, did_you_mean(pattern, names), fmt::join(names, ", ")));
   }
   return boundary_of;
 }
@@ -90,7 +95,8 @@ PatchId apply_boundaries(const std::vector<BoundaryOptions>& boundaries, Model& 
 std::vector<BoundaryOptions> boundaries_of_input(const Options& options) {
   std::vector<BoundaryOptions> boundaries = options.boundaries;
   const std::string& name = options.domain.enclose.name;
-  std::erase_if(boundaries, [&](const BoundaryOptions& b) { return (b.select.empty() ? b.name : b.select) == name; });
+  for (BoundaryOptions& b : boundaries) std::erase(b.select = b.patterns(), name);
+  std::erase_if(boundaries, [](const BoundaryOptions& b) { return b.select.empty(); });
   return boundaries;
 }
 
@@ -104,16 +110,17 @@ Mesh surface_mesh(const Model& model) {
     for (const VertexId v : model.triangles[TriangleId(t)]) block.vertices.push_back(v);
     block.group.push_back(GroupId(model.patch_of_triangle[TriangleId(t)].index()));
   }
+  NamedGroups curves(mesh, 1), corner_names(mesh, 0);
   for (const Curve& curve : model.curves)
     for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
       CellBlock& lines = mesh.block(CellType::line);
       lines.vertices.insert(lines.vertices.end(), {curve.vertices[i], curve.vertices[i + 1]});
-      lines.group.push_back(mesh.add_group(1, curve.name));
+      lines.group.push_back(curves(curve.name));
     }
   for (std::size_t i = 0; i < model.corners.size(); ++i) {
     CellBlock& corners = mesh.block(CellType::vertex);
     corners.vertices.push_back(model.corners[i]);
-    corners.group.push_back(mesh.add_group(0, model.corner_names[i]));
+    corners.group.push_back(corner_names(model.corner_names[i]));
   }
   return mesh;
 }

@@ -79,6 +79,14 @@ std::string as_expression(const JobValue& v) {
   return v.text;
 }
 
+std::vector<std::string> as_names(const JobValue& v) {
+  if (!v.is(JobValue::Kind::list)) return {as_text(v)};
+  std::vector<std::string> names;
+  for (const JobValue& name : v.items) names.push_back(as_text(name));
+  if (names.empty()) throw BadValue("an empty list selects no patch");
+  return names;
+}
+
 /// A way to select: its word, and what follows it. `get` gives none where the boundary does not select that way.
 struct Selector {
   const char* word;
@@ -93,6 +101,10 @@ JobValue list_value(const Items& items, Value value) {
   return items.empty() ? JobValue() : list;
 }
 
+JobValue names_value(const std::vector<std::string>& names) {
+  return names.size() == 1 ? JobValue::of(names[0]) : list_value(names, [](const auto& n) { return JobValue::of(n); });
+}
+
 JobValue box_value(const Box& box) {
   JobValue value = JobValue::table();
   value.add("min", point_value(box.low));
@@ -103,7 +115,8 @@ JobValue box_value(const Box& box) {
 const std::vector<Selector>& selectors() {
   using B = BoundaryOptions;
   static const std::vector<Selector> all = {
-      {"name", [](B& b, const JobValue& v) { b.select = as_text(v); }, [](const B& b) { return text_value(b.select); }},
+      {"name", [](B& b, const JobValue& v) { b.select = as_names(v); },
+       [](const B& b) { return names_value(b.select); }},
       {"id", [](B& b, const JobValue& v) { b.faces = as_faces(v); },
        [](const B& b) { return list_value(b.faces, [](auto f) { return JobValue::of(std::int64_t(f)); }); }},
       {"normal", [](B& b, const JobValue& v) { b.normal = as_normal(v); },
@@ -123,7 +136,7 @@ const std::vector<Selector>& selectors() {
 void set_selector(BoundaryOptions& boundary, const JobValue& v) {
   BoundaryOptions b{boundary.name, {}, boundary.kind, boundary.set_at};  // forgets what was selected before
   if (!v.is(JobValue::Kind::table)) {
-    b.select = as_text(v);
+    b.select = as_names(v);
     boundary = std::move(b);
     return;
   }
@@ -168,7 +181,8 @@ EntryTable boundary_table() {
        "which patches it is made of, by name with * and ?; by default the one of its own name; of smooth geometry also "
        "faces by number (as info counts them), those that look one way, have a colour, lie in a box, are nearest to a "
        "place, or where a formula is true",
-       "a name, { name = \"wing*\" }, { id = 3 }, { id = [3, 4] }, { normal = [0, -1, 0] }, { colour = \"FF0000\" }, "
+       "a name, { name = \"wing*\" }, a list of names, { id = 3 }, { id = [3, 4] }, { normal = [0, -1, 0] }, { colour "
+       "= \"FF0000\" }, "
        "{ box = { min = [0, 0, 0], max = [1, 1, 1] } }, { near = [1, 0, 0] } or { expression = \"z < 0.1\" }"},
       set_selector, get_selector);
   add_entry<BoundaryOptions>(

@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char* kUnnamedCurve = "curve_";  ///< and its number: what edges without a name are called
 constexpr std::size_t kMostUnnamed = 12;         ///< of these in a list
+constexpr std::size_t kMostNamed = 100;          ///< groups of one dimension in a list
 
 const char* yes_no(bool value) { return value ? "yes" : "no"; }
 
@@ -80,14 +81,16 @@ std::string mesh_facts_text(const Mesh& mesh) {
     const int dim = mesh.dimension - codimension;
     if (dim < 1) continue;
     std::string line;
-    std::size_t unnamed = 0;
+    std::size_t unnamed = 0, named = 0;
     for (std::size_t g = 0; g < count.size(); ++g) {
       const Group& group = mesh.groups[GroupId(g)];
       if (group.dimension != dim) continue;
       if (codimension == 2 && group.name.starts_with(kUnnamedCurve) && ++unnamed > kMostUnnamed) continue;
+      if (++named > kMostNamed) continue;
       line += fmt::format("{}{} ({}{}{})", line.empty() ? "" : ", ", group.name, with_commas(count[g]),
                           group.kind.empty() ? "" : ", ", group.kind);
     }
+    if (named > kMostNamed) line += fmt::format(" and {} more, which a report lists", with_commas(named - kMostNamed));
     if (unnamed > kMostUnnamed) line += fmt::format(" and {} more without names", with_commas(unnamed - kMostUnnamed));
     if (!line.empty()) text += fmt::format("{:<14} {}\n", title, line);
   }

@@ -5,6 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShown = 40;       ///< entities of a kind on the terminal
 constexpr std::size_t kShownOpen = 8;    ///< free edges
+constexpr double kOneWay = 0.99619;      ///< cosine of the 5 degrees that `select = { normal = … }` allows
 constexpr std::size_t kShownOfKind = 3;  ///< repairs and suspicious things of a kind
 
 double length_of(const BrepEdge& edge) {
@@ -85,9 +89,58 @@ std::string cad_text(const CadReport& cad) {
   return text;
 }
 
+std::string place_text(const FacePlace& place) {
+  const Point at = place.at;
+  std::string text = fmt::format("area {:.4g} at ({:.4g}, {:.4g}, {:.4g}), ", place.area, at.x, at.y, at.z);
+  if (!place.normal) return text;
+  const auto rounded = [](double x) { return std::round(1000 * x) / 1000 + 0.0; };  // -0 becomes 0
+  const Point n = *place.normal;
+  return text + fmt::format("looks along ({:g}, {:g}, {:g}), ", rounded(n.x), rounded(n.y), rounded(n.z));
+}
+
+Json numbers(Point p) { return {p.x, p.y, p.z}; }
+
 }  // namespace
 
-Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport& cad) {
+std::vector<FacePlace> places_of_faces(const Model& grid, std::size_t num_faces) {
+  struct Sums {
+    Point vector, moment;                                    // of areas
+    double cosine = 1;                                       // of the normal farthest from the mean one
+    double least = std::numeric_limits<double>::infinity();  // distance of a triangle from the middle
+  };
+  std::vector<FacePlace> places(num_faces);
+  std::vector<Sums> sums(num_faces);
+  const auto for_each = [&](const auto& take) {
+    for (std::size_t t = 0; t < grid.triangles.size(); ++t) {
+      const auto& v = grid.triangles[TriangleId(t)];
+      const Point a = grid.points[v[0]], b = grid.points[v[1]], c = grid.points[v[2]];
+      const std::size_t f = grid.input_face[TriangleId(t)];
+      take(places[f], sums[f], 0.5 * cross(b - a, c - a), (a + b + c) / 3, std::array{a, b, c});
+    }
+  };
+  for_each([](FacePlace& place, Sums& sum, Point area, Point middle, const std::array<Point, 3>& corners) {
+    for (const Point& p : corners) place.box.add(p);
+    place.area += length(area);
+    sum.vector = sum.vector + area;
+    sum.moment = sum.moment + length(area) * middle;
+  });
+  for_each([](FacePlace& place, Sums& sum, Point area, Point middle, const std::array<Point, 3>&) {
+    const double away = distance(middle, sum.moment / place.area);
+    if (away < sum.least) {
+      sum.least = away;
+      place.at = middle;
+    }
+    const double product = length(area) * length(sum.vector);
+    if (product > 0) sum.cosine = std::min(sum.cosine, dot(area, sum.vector) / product);
+  });
+  for (std::size_t f = 0; f < num_faces; ++f)
+    if (length(sums[f].vector) > 0 && sums[f].cosine > kOneWay)
+      places[f].normal = sums[f].vector / length(sums[f].vector);
+  return places;
+}
+
+Json geometry_json(const Brep& brep, const std::vector<FacePlace>& places, const BrepGridReport& grid,
+                   const CadReport& cad) {
   Json corners = Json::array(), edges = Json::array(), faces = Json::array();
   for (const BrepCorner& c : brep.corners)
     corners.push_back({{"name", c.name}, {"at", {c.at.x, c.at.y, c.at.z}}, {"tolerance", c.tolerance}});
@@ -101,6 +154,10 @@ Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport
                  {"kind", face.kind},
                  {"loops", face.loops.size()},
                  {"tolerance", face.tolerance},
+                 {"area", places[f].area},
+                 {"at", numbers(places[f].at)},
+                 {"normal", places[f].normal ? numbers(*places[f].normal) : Json(nullptr)},
+                 {"box", {numbers(places[f].box.low), numbers(places[f].box.high)}},
                  {"triangles", grid.faces[f].triangles},
                  {"mapped", grid.faces[f].is_mapped},
                  {"min_angle_deg", grid.faces[f].min_angle_deg}};
@@ -128,7 +185,8 @@ Json geometry_json(const Brep& brep, const BrepGridReport& grid, const CadReport
   return json;
 }
 
-std::string geometry_text(const Brep& brep, const BrepGridReport& grid, const CadReport& cad, bool is_quick) {
+std::string geometry_text(const Brep& brep, const std::vector<FacePlace>& places, const BrepGridReport& grid,
+                          const CadReport& cad, bool is_quick) {
   std::string text;
   std::size_t shown = 0, edges = 0;
   for (const BrepEdge& e : brep.edges) edges += !e.is_degenerate();
@@ -146,6 +204,7 @@ std::string geometry_text(const Brep& brep, const BrepGridReport& grid, const Ca
     const BrepFaceReport& made = grid.faces[f];
     std::string what = face.kind.empty() ? "" : face.kind + ", ";
     if (f < cad.faces.size()) what += cad.faces[f].surface + ", ";
+    what += place_text(places[f]);
     if (f < cad.faces.size() && !cad.faces[f].colour.empty()) what += "colour " + cad.faces[f].colour + ", ";
     text += fmt::format("face {:<9} {:<20} {}{} loop{}, {} triangles {}, angles from {:.1f} deg\n", f + 1, face.name,
                         what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles,

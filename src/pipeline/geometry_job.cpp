@@ -181,15 +181,14 @@ Model grid_geometry_to_goals(const GeometryInput& input, std::shared_ptr<const S
                             geometry_goals(options, input.look.extent), report, context);
 }
 
-Mesh grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGridReport& report) {
+Model grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGridReport& report) {
   const Options usual;
-  const BrepLook look = look_at_brep(brep, context);
+  BrepLook look = look_at_brep(brep, context);
   if (is_quick) {
-    report = look.report;
-    return surface_mesh(look.grid);
+    report = std::move(look.report);
+    return std::move(look.grid);
   }
-  return surface_mesh(
-      grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report));
+  return grid_geometry(brep, *geometry_sizes(brep, look, usual, nullptr, context), usual, context, report);
 }
 
 bool is_smooth_file(const std::string& path) { return is_geometry_file(path) || is_cad_file(path); }

@@ -37,7 +37,7 @@ BrepGoals geometry_goals(const Options& options, const BrepExtent& extent);
 
 /// @brief A grid of the sizes that are usual: to look at the geometry.
 /// @param is_quick  the coarse grid alone that sizes are found by
-Mesh grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGridReport& report);
+Model grid_to_look_at(const Brep& brep, bool is_quick, Context& context, BrepGridReport& report);
 
 /// @brief A grid of smooth geometry as an input: with the names of faces, edges and corners, and what the faces bound.
 NamedMesh named_surface(const Model& grid, const Brep& brep, const std::string& stem);

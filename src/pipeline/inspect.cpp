@@ -12,7 +12,6 @@
 #include "delfront/model.hpp"
 #include "pipeline/boundaries.hpp"
 #include "pipeline/facts_text.hpp"
-#include "pipeline/geometry_facts.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "pipeline/planar_job.hpp"
 #include "pipeline/report_json.hpp"
@@ -46,14 +45,15 @@ Inspected inspect_brep(Brep brep, CadReport cad, const std::string& stem, const 
   result.brep = std::move(brep);
   result.cad = std::move(cad);
   result.is_quick = result.cad.free_edges > 0 || result.brep.faces.size() > kManyFaces;
-  Mesh grid;
+  Model grid;
   try {
     with_file(path, doubt_of(result.cad),
               [&] { grid = grid_to_look_at(result.brep, result.is_quick, context, result.brep_grid); });
   } catch (const MeshingError& e) {  // nothing was asked for but whether it can be gridded
     throw InputError(e.what(), e.places);
   }
-  look_at_inputs({{std::move(grid), stem}}, result, context);
+  result.face_places = places_of_faces(grid, result.brep.faces.size());
+  look_at_inputs({{surface_mesh(grid), stem}}, result, context);
   return result;
 }
 
@@ -117,7 +117,7 @@ Json facts_json(const std::string& name, const Inspected& it) {
     json["findings"] = to_json(it.findings);
   } else {
     json["surface"] = to_json(it.surface);
-    if (!it.brep.faces.empty()) json["geometry"] = geometry_json(it.brep, it.brep_grid, it.cad);
+    if (!it.brep.faces.empty()) json["geometry"] = geometry_json(it.brep, it.face_places, it.brep_grid, it.cad);
     if (!it.cad.format.empty()) json["geometry"]["cad"]["coordinates"] = coordinates_of(it);
   }
   return json;
@@ -125,7 +125,7 @@ Json facts_json(const std::string& name, const Inspected& it) {
 
 std::string facts_text(const std::string& name, const Inspected& it) {
   std::string text = fmt::format("file           {}\n", name);
-  if (!it.brep.faces.empty()) text += geometry_text(it.brep, it.brep_grid, it.cad, it.is_quick);
+  if (!it.brep.faces.empty()) text += geometry_text(it.brep, it.face_places, it.brep_grid, it.cad, it.is_quick);
   text += mesh_facts_text(*it.mesh);
   if (!it.is_grid && !it.is_of_lines) text += surface_facts_text(it.surface);
   if (it.is_grid && it.is_usable())

@@ -11,6 +11,7 @@
 #include "delfront/job.hpp"
 #include "delfront/mesh.hpp"
 #include "delfront/surface_check.hpp"
+#include "pipeline/geometry_facts.hpp"
 
 namespace delfront {
 
@@ -25,6 +26,7 @@ struct Inspected {
   CadReport cad;                  ///< of a CAD file
   Brep brep;                      ///< smooth geometry; the surface is then its grid of usual sizes
   BrepGridReport brep_grid;
+  std::vector<FacePlace> face_places;  ///< of the brep's faces, by that grid
   bool is_quick = false;  ///< that grid is a coarse one: what is open or large need not be gridded to be told about
   bool is_usable() const { return is_grid || is_of_lines ? !has_errors(findings) : surface.can_bound_volume; }
 };

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
 #include "delfront/errors.hpp"
+#include "pipeline/geometry_job.hpp"
 #include "pipeline/surface_job.hpp"
 #include "sizing/asked_sizes.hpp"
 
@@ -121,23 +123,29 @@ std::shared_ptr<const SizeField> build_size_field(const TetComplex& complex, con
   return asked ? combine_with_asked(std::move(of_boundary), std::move(asked), options.size) : of_boundary;
 }
 
+/// What helps where edges of the surface are longer than what is asked for.
+const char* remedy_of_coarse_surface(const Options& options) {
+  const auto& files = options.input.files;
+  return !files.empty() && std::all_of(files.begin(), files.end(), is_smooth_file)
+             ? "sizes fall faster there than its triangles can: a smaller size.growth, or size.on of the face, helps"
+             : "of given facets --surface-method front makes new triangles, to the sizes asked for";
+}
+
 /// Surfaces are kept as they are given, whatever sizes are asked for: flat cells stand where the two do not fit.
 /// @param asked  null: hmax alone
-void warn_of_coarse_surface(const Model& model, const SizeOptions& options, const SizeField* asked, Context& context) {
+void warn_of_coarse_surface(const Model& model, const Options& options, const SizeField* asked, Context& context) {
   std::vector<std::array<Point, 2>> edges;
   for (const std::array<VertexId, 3>& triangle : model.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const VertexId v = triangle[k], w = triangle[(k + 1) % 3];
       if (v.index() < w.index()) edges.push_back({model.points[v], model.points[w]});  // its other triangle has it too
     }
-  const LongEdges found = find_long_edges(edges, options, asked, context);
+  const LongEdges found = find_long_edges(edges, options.size, asked, context);
   if (found.count == 0) return;
   context.warn(fmt::format(
       "{} edges of the surface are longer than the sizes asked for there, the worst {:g} where {:g} is asked "
-      "for (at {:g} {:g} {:g}): cells along it may be flat; of given facets --surface-method front makes new "
-      "triangles, "
-      "to the sizes asked for",
-      found.count, found.length, found.size, found.at.x, found.at.y, found.at.z));
+      "for (at {:g} {:g} {:g}): cells along it may be flat; {}",
+      found.count, found.length, found.size, found.at.x, found.at.y, found.at.z, remedy_of_coarse_surface(options)));
 }
 
 /// The field's size at every vertex, so that all sizes keep the growth. Vertices that the grid does not use are not
@@ -169,7 +177,7 @@ Prepared prepare_volume(Model& model, const Options& options, std::shared_ptr<co
   prepared.grid = options.surface.method == "keep" ? recover(model, options, report, context)
                                                    : regrid_and_recover(model, options, asked, report, context);
   if (options.surface.method == "keep" && !makes_stretched_cells(options, asked.get()))
-    warn_of_coarse_surface(model, options.size, asked.get(), context);
+    warn_of_coarse_surface(model, options, asked.get(), context);
   prepared.size = build_size_field(prepared.grid.complex, model, options, std::move(asked), context);
   set_vertex_sizes(prepared.grid.complex, *prepared.size, context);
   return prepared;

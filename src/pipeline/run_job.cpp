@@ -98,6 +98,8 @@ void read_smooth(Run& run, const std::string& path) {
   {
     const StageTimer timer(run.context, "read");
     if (held) cad = held->cad;
+    const bool is_alone = run.options.input.files.size() == 1 && !has_far_field(run.options);
+    if (is_alone && !held && !is_cad_file(path)) check_holes(delfront::read_geometry(path), path);
     smooth.brep = held ? *held->brep : read_brep(path, run.context, cad);
     smooth.doubt = doubt_of(cad);
   }
@@ -220,7 +222,9 @@ Options options_for_looks(const Options& options, const Model& model, bool is_al
   std::vector<std::string> later;  // of the far field, which is not there yet
   if (has_far_field(options)) later.push_back(options.domain.enclose.name);
   for (const BoundaryOptions& b : options.boundaries)
-    if (!later.empty() && (b.select.empty() ? b.name : b.select) == later[0]) later.push_back(b.name);
+    if (const auto patterns = b.patterns();
+        !later.empty() && std::find(patterns.begin(), patterns.end(), later[0]) != patterns.end())
+      later.push_back(b.name);
   std::erase_if(result.size.on, [&](const SizeOnOptions& on) {
     const auto fits = [&](const std::string& name) { return matches_pattern(name, on.name); };
     return std::none_of(names.begin(), names.end(), fits) && std::any_of(later.begin(), later.end(), fits);

@@ -13,6 +13,7 @@
 #include "base/hilbert.hpp"
 #include "base/parallel.hpp"
 #include "mesh/bins.hpp"
+#include "mesh/named_groups.hpp"
 
 namespace delfront {
 
@@ -94,7 +95,8 @@ class Conversion {
   };
 
   void add_groups() {
-    for (const std::string& name : grid_.regions) region_group_.push_back(mesh_.add_group(3, name));
+    NamedGroups regions(mesh_, 3);
+    for (const std::string& name : grid_.regions) region_group_.push_back(regions(name));
     patch_group_.resize(model_.patches.size());
   }
 
@@ -217,9 +219,10 @@ class Conversion {
   }
 
   void add_curves() {
+    NamedGroups curves(mesh_, 1);
     for (std::size_t i = 0; i < grid_.curve_pieces.size(); ++i) {
       if (grid_.curve_pieces[i].empty()) continue;
-      const GroupId group = mesh_.add_group(1, model_.curves[CurveId(i)].name);
+      const GroupId group = curves(model_.curves[CurveId(i)].name);
       CellBlock& lines = mesh_.block(CellType::line);
       for (const auto& [a, b] : grid_.curve_pieces[i]) {
         lines.group.push_back(group);
@@ -232,11 +235,12 @@ class Conversion {
   }
 
   void add_corners() {
+    NamedGroups names(mesh_, 0);
     for (std::size_t i = 0; i < model_.corners.size(); ++i) {
       const VertexIndex v = new_id_[model_.corners[i].index()];
       if (v == kNoIndex) continue;
       CellBlock& corners = mesh_.block(CellType::vertex);
-      corners.group.push_back(mesh_.add_group(0, model_.corner_names[i]));
+      corners.group.push_back(names(model_.corner_names[i]));
       corners.vertices.emplace_back(v);
       mesh_.vertex_entity[v] = {0, static_cast<std::uint32_t>(i), 0, 0};
     }

@@ -111,6 +111,47 @@ class SmoothGeometry(case.Case):
         self.write("hole.geom.toml", body + ball.format(0))
         self.expect(0, "mesh", "hole.geom.toml", "-o", "hole.vtu")
 
+    def test_a_hole_in_the_body_of_another_file_is_taken(self):
+        self.write("body.geom.toml", '[[shape]]\ntype = "box"\nmin = [-2, -2, -2]\nmax = [2, 2, 2]\n')
+        self.write("hole.geom.toml", '[[shape]]\ntype = "box"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nreversed = true\n')
+        self.expect(0, "mesh", "body.geom.toml", "hole.geom.toml", "-o", "body.vtu", "--report", "body.json")
+        report = json.loads((self.folder / "body.json").read_text())
+        self.assertAlmostEqual(report["quality"]["volume"], 64 - 8, places=9)
+
+    def test_a_hole_in_a_far_field_is_taken(self):
+        self.write("hole.geom.toml", '[[shape]]\ntype = "box"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nreversed = true\n')
+        self.expect(0, "mesh", "hole.geom.toml", "-o", "flow.vtu", "--farfield", "box:3c", "--accuracy", "coarse")
+
+    def test_very_many_names_do_not_fill_the_terminal(self):
+        self.write("boxes.geom.toml", "".join(
+            f'[[shape]]\ntype = "box"\nname = "box{i}"\nmin = [{2 * i}, 0, 0]\nmax = [{2 * i + 1}, 1, 1]\n' for i in range(20)))
+        result = self.expect(0, "mesh", "boxes.geom.toml", "-o", "boxes.vtp", "--stop-after", "surface", "--hmax", "1",
+                             "--report", "boxes.json")
+        self.assertIn("and 20 more, which a report lists", case.unbroken(result.stdout))
+        names = {group["name"] for group in json.loads((self.folder / "boxes.json").read_text())["boundaries"]}
+        self.assertEqual(len(names & {f"box{i}_{k}_{side}" for i in range(20) for k in "xyz" for side in ("low", "high")}), 120)
+
+    def test_info_says_where_faces_are(self):
+        """What it says of a face selects that face."""
+        self.write("part.geom.toml", '[[shape]]\ntype = "box"\nmin = [0, 0, 0]\nmax = [4, 2, 1]\n'
+                   '[[shape]]\ntype = "cylinder"\nname = "rod"\nradius = 0.5\nheight = 3\norigin = [10, 0, 0]\n')
+        result = self.expect(0, "info", "part.geom.toml", "--json", "part.json")
+        self.assertIn("looks along (0, 0, 1)", result.stdout)
+        faces = json.loads((self.folder / "part.json").read_text())["geometry"]["faces"]
+        for face, area in zip(faces, (2, 2, 4, 4, 8, 8)):
+            self.assertAlmostEqual(face["area"], area, places=12)
+        for face in faces[7:]:
+            self.assertTrue(0.97 * math.pi / 4 < face["area"] < math.pi / 4)
+        for number, face in enumerate(faces, 1):
+            low, high = face["box"]
+            self.assertTrue(all(a <= x <= b for a, x, b in zip(low, face["at"], high)))
+            self.write("job.toml", 'input.files = ["part.geom.toml"]\noutput.files = ["part.vtp"]\n'
+                       f'[boundaries.picked]\nselect = {{ near = [{face["at"]}] }}\n')
+            result = self.expect(0, "mesh", "job.toml", "-v", "--stop-after", "surface", "--accuracy", "coarse")
+            self.assertIn(f"boundary 'picked': face {number}\n", result.stderr)
+        flat = [face for face in faces if face["normal"]]
+        self.assertEqual(len(flat), len(faces) - sum(face["name"].startswith("rod_side") for face in faces))
+
     def test_a_file_given_twice_is_said(self):
         self.write("ball.geom.toml", BALL)
         self.expect(2, "mesh", "ball.geom.toml", "ball.geom.toml", "-o", "ball.vtu", says="given twice")
@@ -162,6 +203,13 @@ report = "room.json"
         self.write("room.toml", job)
         self.expect(code, "mesh", "room.toml", "--stop-after", "surface", says=says)
         return {group["name"] for group in self.report("room.json")["boundaries"]} if code == 0 else None
+
+    def test_patches_are_selected_by_a_list_of_names(self):
+        self.assertEqual(self.select(("ends", '["room_z_low", "room_x_*"]'), ("side", '{ name = ["room_y_low"] }')),
+                         {"ends", "side", "room_y_high", "room_z_high"})
+        self.select(("ends", '["room_z_low", "roof"]'), code=2, says="boundaries.ends: no patch is called 'roof'")
+        self.select(("ends", "[]"), code=2, says="an empty list selects no patch")
+        self.select(("ends", '["room_z_low", 3]'), code=2, says="room.toml:7")
 
     def test_faces_are_selected_by_box(self):
         low = "{ box = { min = [0, 0, 0], max = [1, 2, 0] } }"  # a face in the box's sides lies in it

@@ -35,4 +35,20 @@ inline int fuzz_reader(Reader reader, const std::uint8_t* data, std::size_t size
   return 0;
 }
 
+using FieldReader = void (*)(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context);
+
+/// @brief The same of a reader of fields: those of a mesh of three points have a value for each.
+template <FieldReader Read>
+int fuzz_field_reader(const std::uint8_t* data, std::size_t size) {
+  const auto read = [](std::string_view bytes, const std::string& path, Context& context) {
+    Mesh mesh;
+    mesh.points.resize(3);
+    Read(bytes, path, mesh, context);
+    for (const Field& field : mesh.fields)
+      if (field.values.size() != mesh.points.size() * static_cast<std::size_t>(field.components)) std::abort();
+    return mesh;
+  };
+  return fuzz_reader(read, data, size);
+}
+
 }  // namespace delfront

@@ -3,9 +3,11 @@
 // projection.
 #include <gtest/gtest.h>
 
+#include <BRepBuilderAPI_Transform.hxx>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <gp_Trsf.hxx>
 #include <map>
 
 #include "delfront/cad.hpp"
@@ -73,6 +75,29 @@ TEST_P(SharedCad, D1_S11_has_a_valid_grid_on_the_geometry) {
         << ", at " << p.x << " " << p.y << " " << p.z << ", parameters " << report.entity[i].u << " "
         << report.entity[i].v;
   }
+}
+
+/// OpenCASCADE works to 1e-7: a thousandth of a unit wide, these were sewn wrongly.
+TEST(TinyCad, D4_faces_of_a_tiny_part_are_sewn_as_those_of_a_large_one) {
+  DELFRONT_NEEDS_SHARED_DATA(shared);
+  const std::filesystem::path path = *shared / "cad" / "mesh_T106_V3.step";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const std::string small = (fixtures::scratch_folder() / "small.brep").string();
+  gp_Trsf smaller;
+  smaller.SetScaleFactor(0.001);
+  occ::write_brep(BRepBuilderAPI_Transform(occ::read(path.string(), "M"), smaller, true).Shape(), small);
+  Context context;
+  std::vector<double> volume;
+  for (const std::string& file : {path.string(), small}) {
+    CadReport cad;
+    const Brep brep = read_cad(file, {}, cad, context);
+    EXPECT_EQ(cad.free_edges, 0u) << file;
+    const BrepLook look = look_at_brep(brep, context);
+    const SurfaceReport facts = check_surface(look.grid, context);
+    EXPECT_TRUE(facts.can_bound_volume) << file;
+    volume.push_back(facts.volume);
+  }
+  EXPECT_NEAR(volume[1] * 1e9 / volume[0], 1, 1e-4);
 }
 
 std::string name_of(const testing::TestParamInfo<Expected>& info) {

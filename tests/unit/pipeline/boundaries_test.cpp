@@ -27,7 +27,7 @@ std::vector<std::string> names_of_triangles(const Model& model) {
 
 TEST(ApplyBoundaries, merges_what_a_pattern_selects_and_keeps_the_rest) {
   Model model = model_with_patches({"OML_top", "hub", "OML_low", "tip"});
-  apply_boundaries({{"wing", "OML*", "wall"}, {"tip", "", "symmetry"}}, model);
+  apply_boundaries({{"wing", {"OML*"}, "wall"}, {"tip", {}, "symmetry"}}, model);
   EXPECT_EQ(names_of_triangles(model), (std::vector<std::string>{"wing", "hub", "wing", "tip"}));
   ASSERT_EQ(model.patches.size(), 3u);
   EXPECT_EQ(model.patches[model.patch_of_triangle[TriangleId(0)]].kind, "wall");
@@ -37,7 +37,7 @@ TEST(ApplyBoundaries, merges_what_a_pattern_selects_and_keeps_the_rest) {
 
 TEST(ApplyBoundaries, the_later_of_two_gets_the_patch_and_a_kind_of_the_input_stays) {
   Model model = model_with_patches({"a1", "a2"});
-  apply_boundaries({{"all", "a*", ""}, {"second", "a2", ""}}, model);
+  apply_boundaries({{"all", {"a*"}, ""}, {"second", {"a2"}, ""}}, model);
   EXPECT_EQ(names_of_triangles(model), (std::vector<std::string>{"all", "second"}));
   EXPECT_EQ(model.patches[model.patch_of_triangle[TriangleId(0)]].kind, "inlet");
 }
@@ -45,7 +45,7 @@ TEST(ApplyBoundaries, the_later_of_two_gets_the_patch_and_a_kind_of_the_input_st
 TEST(ApplyBoundaries, a_selector_that_matches_nothing_names_what_there_is) {
   Model model = model_with_patches({"body", "ground"});
   try {
-    apply_boundaries({{"bodi", "", "wall"}}, model);
+    apply_boundaries({{"bodi", {}, "wall"}}, model);
     FAIL() << "accepted";
   } catch (const UsageError& e) {
     const std::string message = e.what();

@@ -94,7 +94,7 @@ require = "min_dihedral > 8"
   EXPECT_EQ(o.domain.keep_points[0], (Point{5, 5.5, -5}));
   ASSERT_EQ(o.boundaries.size(), 2u);
   const std::size_t wing = o.boundaries[0].name == "wing" ? 0 : 1;
-  EXPECT_EQ(o.boundaries[wing].select, "OML*");
+  EXPECT_EQ(o.boundaries[wing].select, std::vector<std::string>{"OML*"});
   EXPECT_EQ(o.boundaries[wing].kind, "wall");
   EXPECT_EQ(o.boundaries[1 - wing].name, "odd name");
   EXPECT_EQ(o.size.hmin->value, 2e-4);
@@ -185,7 +185,7 @@ TEST(SetOption, takes_words_of_the_command_line) {
   set_option(o, "boundaries.wing.kind", "wall");
   set_option(o, "boundaries.wing.select", "OML*");
   ASSERT_EQ(o.boundaries.size(), 1u);
-  EXPECT_EQ(o.boundaries[0].select, "OML*");
+  EXPECT_EQ(o.boundaries[0].select, std::vector<std::string>{"OML*"});
   set_option(o, "domain.enclose", "{ shape = \"box\", size = \"10c\" }");
   EXPECT_EQ(o.domain.enclose.shape, "box");
   set_option(o, "domain.keep", "1,2,3");
@@ -358,7 +358,7 @@ Options unusual_options() {
       o, "planar.curve",
       "[{ name = 'wing', at = [[0, 0], [1, 0.1], [0.5, 1]], closed = true, h = '1%' }, { type = 'line', at = [[0, "
       "0], [1, 2]] }]");
-  o.boundaries.push_back({"two words.", "", "inlet"});
+  o.boundaries.push_back({"two words.", {"a b", "c*"}, "inlet"});
   return o;
 }
 

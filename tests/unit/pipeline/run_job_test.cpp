@@ -233,18 +233,18 @@ TEST_F(RunJob, boundaries_name_the_far_field_and_give_it_a_kind) {
       if (group.dimension == 2) found[group.name] = group.kind;
     return found;
   };
-  options_.boundaries = {{"body", "*", ""}, {"farfield", "", "inlet"}};
+  options_.boundaries = {{"body", {"*"}, ""}, {"farfield", {}, "inlet"}};
   const JobResult kept = run();
   ASSERT_EQ(kept.exit_code, ExitCode::done) << kept.error;
   EXPECT_NEAR(kept.report.quality.volume, 6 * 6 * 6 - 1, 1e-9) << "the outside alone";
   EXPECT_EQ(kinds(kept), (std::map<std::string, std::string>{{"body", "wall"}, {"farfield", "inlet"}}));
-  options_.boundaries = {{"body", "*", "patch"}, {"tunnel", "farfield", ""}};
+  options_.boundaries = {{"body", {"*"}, "patch"}, {"tunnel", {"farfield"}, ""}};
   const JobResult renamed = run();
   ASSERT_EQ(renamed.exit_code, ExitCode::done) << renamed.error;
   EXPECT_EQ(kinds(renamed), (std::map<std::string, std::string>{{"body", "patch"}, {"tunnel", "farfield"}}));
-  options_.boundaries = {{"farfield", "*", "wall"}};
+  options_.boundaries = {{"farfield", {"*"}, "wall"}};
   EXPECT_EQ(run().exit_code, ExitCode::usage) << "two patches of one name";
-  options_.boundaries = {{"farfield", "", "inlet"}};
+  options_.boundaries = {{"farfield", {}, "inlet"}};
   options_.stop_after = "geometry";
   EXPECT_EQ(run().exit_code, ExitCode::done);
 }
