@@ -16,6 +16,7 @@
 #include "guard.hpp"
 #include "pipeline/facts_text.hpp"
 #include "pipeline/option_table.hpp"
+#include "pipeline/report_files.hpp"
 
 namespace delfront::cli {
 
@@ -27,6 +28,7 @@ const char* const kExamples =
     "  delfront mesh body.stl -o body.vtu --growth 1.3     cells grow away from the surface\n"
     "  delfront mesh car.stl -o case/ --farfield box:10c   the outside, as an OpenFOAM case\n"
     "  delfront mesh case.toml -o wing.su2 -o wing.vtu --set size.hmax=0.5 --report wing.json\n"
+    "  delfront mesh part.step -o part.su2 --report part.html   a page to read: quality, worst cells, warnings\n"
     "  delfront mesh case.toml --print-config              the whole configuration, to start a job file from\n"
     "\n"
     "LENGTH: 0.5 (model units), 5% (of the bounding box's diagonal), 20c (longest sides), 2mm, 1in, ...\n"
@@ -300,7 +302,8 @@ class JobCommand : public Command {
                  options.output.units, result.scale.metres_per_unit);
     if (!result.files_written.empty()) fmt::print("written        {}\n", fmt::join(result.files_written, ", "));
     print_starter_files(result.starter);
-    if (!options.output.report.empty()) fmt::print("report         {}\n", options.output.report);
+    if (!options.output.report.empty())
+      fmt::print("report         {}\n", fmt::join(report_files(options.output.report), ", "));
     if (!result.defects_file.empty()) fmt::print("defects        {}\n", result.defects_file);
   }
 

@@ -8,16 +8,21 @@
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "base/report_name.hpp"
 #include "commands.hpp"
 #include "delfront/errors.hpp"
+#include "delfront/grid_check.hpp"
 #include "delfront/io.hpp"
 #include "delfront/refine_grid.hpp"
 #include "delfront/version.hpp"
 #include "pipeline/facts_text.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/refine_job.hpp"
+#include "pipeline/report_files.hpp"
 #include "pipeline/report_json.hpp"
+#include "report/page.hpp"
 
 namespace delfront::cli {
 
@@ -57,7 +62,9 @@ class RefineCommand : public Command {
     app->add_option("--feature-angle", options_.feature_angle_deg,
                     "angle between facets from which an edge is a feature; by default 40 degrees")
         ->type_name("DEG");
-    app->add_option("--report", report_, "what was done, as JSON; - for stdout")->type_name("FILE");
+    app->add_option("--report", report_,
+                    "what was done, as JSON; - for stdout; NAME.html: a page to read, with NAME.json beside it")
+        ->type_name("FILE");
     app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
     app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");
     app->add_flag("--ascii", is_ascii_, "write text instead of binary, where the format has both");
@@ -88,7 +95,7 @@ class RefineCommand : public Command {
       report_failure(terminal, facts, context);
       throw;
     }
-    if (!report_.empty()) write_json(report_, report_json(facts, context));
+    if (!report_.empty()) write_report(facts, context);
     if (terminal.verbosity() >= 0 && report_ != "-") print(facts);
     return static_cast<int>(ExitCode::done);
   }
@@ -102,6 +109,8 @@ class RefineCommand : public Command {
     Mesh fine;
     nlohmann::ordered_json cells_before = nullptr, cells = nullptr;
     RefineGridReport report;
+    QualityReport quality;                         ///< where there is to be a report
+    std::optional<std::vector<Finding>> findings;  ///< of the grid, where that is to be a page
     std::vector<std::string> warnings, files_written;
   };
 
@@ -115,10 +124,17 @@ class RefineCommand : public Command {
     if (!geometry_.empty()) options_.model = &model;
     facts.fine = refine_and_check(coarse, options_, facts.report, context);
     facts.cells = count_cells(facts.fine);
+    if (!report_.empty()) measure(context, facts);
     facts.warnings = all_warnings(facts.report);
     write(context, facts);
     terminal.clear_bar();
     for (const std::string& warning : facts.warnings) terminal.log(LogLevel::warning, warning);
+  }
+
+  void measure(Context& context, Facts& facts) const {
+    const StageTimer timer(context, "measure");
+    facts.quality = measure_quality(facts.fine, context);
+    if (is_page_name(report_)) facts.findings = check(facts.fine);
   }
 
   /// That there is no report either is said, and the error stays what it was.
@@ -126,18 +142,26 @@ class RefineCommand : public Command {
     terminal.clear_bar();
     if (report_.empty()) return;
     try {
-      write_json(report_, report_json(facts, context));
+      write_report(facts, context);
     } catch (const Error& e) {
       terminal.log(LogLevel::warning, fmt::format("no report: {}", e.what()));
     }
   }
 
   void check_report() const {
-    if (report_.empty() || report_ == "-") return;
-    refuse_to_overwrite(report_);
-    if (std::find(outputs_.begin(), outputs_.end(), report_) != outputs_.end())
-      throw UsageError(fmt::format("-o and --report name the same file, {}", report_));
-    check_writable(report_);
+    if (report_ == "-") return;
+    for (const std::string& file : report_files(report_)) {
+      refuse_to_overwrite(file);
+      if (std::find(outputs_.begin(), outputs_.end(), file) != outputs_.end())
+        throw UsageError(fmt::format("-o and --report name the same file, {}", file));
+      check_writable(file);
+    }
+  }
+
+  void write_report(const Facts& facts, const Context& context) const {
+    const std::string json = report_json(facts, context);
+    write_json(json_name(report_), json);
+    if (is_page_name(report_)) write_text_file(report_, report_page(json, "", facts.fine));
   }
 
   void check_words() const {
@@ -230,6 +254,11 @@ class RefineCommand : public Command {
                  {"peak_memory_bytes", peak_resident_memory()},
                  {"files_written", facts.files_written}};
     json.update(to_json(facts.report));
+    json["quality"] = to_json(facts.quality);
+    json["grid_findings"] = facts.findings ? to_json(*facts.findings) : Json(nullptr);
+    json["boundaries"] = groups_json(facts.fine, 2);
+    json["regions"] = groups_json(facts.fine, 3);
+    json["curves"] = groups_json(facts.fine, 1);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
 
@@ -242,7 +271,7 @@ class RefineCommand : public Command {
           with_commas(report.points_on_surface), with_commas(report.points_on_features), report.largest_move,
           with_commas(report.halved), with_commas(report.reversed));
     fmt::print("written        {}\n", fmt::join(outputs_, ", "));
-    if (!report_.empty()) fmt::print("report         {}\n", report_);
+    if (!report_.empty()) fmt::print("report         {}\n", fmt::join(report_files(report_), ", "));
   }
 
   std::string in_, geometry_, report_, from_, to_;

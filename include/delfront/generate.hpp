@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,7 @@ struct Report {
   ImproveReport improve;  ///< of the coarse grid, where there are levels
   LevelsReport levels;
   QualityReport quality;
+  std::optional<SizeFit> size_fit;  ///< where output.report is a page, sizes are not stretched, and there is a grid
   std::vector<std::string> warnings;
 };
 

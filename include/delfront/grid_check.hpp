@@ -38,6 +38,12 @@ struct QualityReport {
   const Measure* find(const std::string& name) const;
 };
 
+/// @brief How the sides of a grid's cells compare with the sizes that were wanted where they are.
+struct SizeFit {
+  Measure ratio;           ///< every edge once: its length over the size wanted at its middle; ids: its two points
+  double share_right = 0;  ///< of all edges, those of 0.7 to 1.4 times that size
+};
+
 /// @param num_worst  how many of the worst each measure lists
 QualityReport measure_quality(const Mesh& mesh, Context& context, std::size_t num_worst = 10);
 

@@ -104,7 +104,11 @@ struct JobResult {
   std::vector<GeometryGrid> geometry;  ///< one a file of smooth geometry that was gridded
   Report report;  ///< filled as far as the run came; `surface.findings` also where the surface was refused
 
-  std::shared_ptr<const Mesh> partial;     ///< the grid as far as it came, where gridding failed; else null
+  std::shared_ptr<const Mesh> partial;  ///< the grid as far as it came, where gridding failed; else null
+  /// What the exact check of the finished grid found, where output.report is a page; null: it was not looked at.
+  std::optional<std::vector<Finding>> grid_findings;
+  std::map<std::string, std::string> colours;  ///< RRGGBB by the boundary's name, where CAD files give all of it one
+
   std::vector<std::string> failed_gates;   ///< sentences
   std::vector<Finding> gate_failures;      ///< their places
   std::vector<std::string> files_written;  ///< grids, each complete
@@ -133,11 +137,11 @@ std::shared_ptr<const SizeField> build_job_size_field(const Options& options, co
 /// @brief A whole job: read, check, enclose, grid, improve, gates, write, report.
 ///
 /// Nothing is thrown: how the run ended stands in the result, and, where `options.output.report` names a file, in that
-/// file too, also when the run failed. Outputs are tried for writing before any work. When the surface is refused,
-/// gridding fails or a gate is not met, a defects file is written to `options.output.defects`, or beside the first
-/// output. Where gridding fails, the grid as far as it came is written beside the first output as NAME_partial.vtu.
-/// Either one of an earlier run, under that name, is removed where this run has none. Limits of `options.limits` are
-/// put into `context`.
+/// file too (NAME.html: a page, and the JSON as NAME.json), also when the run failed. Outputs are tried for writing
+/// before any work. When the surface is refused, gridding fails or a gate is not met, a defects file is written to
+/// `options.output.defects`, or beside the first output. Where gridding fails, the grid as far as it came is written
+/// beside the first output as NAME_partial.vtu. Either one of an earlier run, under that name, is removed where this
+/// run has none. Limits of `options.limits` are put into `context`.
 /// @param command  what the user typed, for the report
 /// @post  each of files_written is complete; no other output exists that was not there before
 JobResult run_job(const Options& options, Context& context, const std::string& command = "",

@@ -244,7 +244,7 @@ struct OutputOptions {
   std::vector<std::string> files;
   std::string format;       ///< overrides the extension
   std::string units;        ///< "", or m mm in ft: rescale on output
-  std::string report;       ///< JSON
+  std::string report;       ///< JSON; NAME.html: a page to read, and the JSON as NAME.json beside it
   std::string defects;      ///< VTP
   std::string require;      ///< gates
   bool ascii = false;       ///< text instead of binary, where a format has both

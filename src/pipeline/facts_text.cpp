@@ -27,16 +27,6 @@ std::size_t rounded(double value) {
 
 }  // namespace
 
-std::string with_commas(std::size_t value) {
-  const std::string digits = std::to_string(value);
-  std::string result;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) result += ',';
-    result += digits[i];
-  }
-  return result;
-}
-
 constexpr std::size_t kMostIds = 8;  // of a place
 
 std::string findings_text(const std::vector<Finding>& findings, std::size_t places_shown) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/with_commas.hpp"
 #include "delfront/findings.hpp"
 #include "delfront/grid_check.hpp"
 #include "delfront/job.hpp"
@@ -24,7 +25,5 @@ std::string mesh_facts_text(const Mesh& mesh);
 std::string surface_facts_text(const SurfaceReport& report);
 /// @brief Cells, points, sizes, memory and time. @param max_cells  the limit of the job; 0: none
 std::string estimate_text(const Estimate& estimate, std::uint64_t max_cells);
-/// @return "1,234,567"
-std::string with_commas(std::size_t value);
 
 }  // namespace delfront

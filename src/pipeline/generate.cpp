@@ -6,11 +6,13 @@
 #include <malloc.h>
 #endif
 
+#include "base/report_name.hpp"
 #include "improve/improve.hpp"
 #include "pipeline/levels.hpp"
 #include "pipeline/prepare.hpp"
 #include "pipeline/size_survey.hpp"
 #include "sizing/asked_sizes.hpp"
+#include "sizing/size_fit.hpp"
 #include "volume/front.hpp"
 #include "volume/refine.hpp"
 #include "volume/to_mesh.hpp"
@@ -58,14 +60,18 @@ Outcome generate(Model model, const Options& all_options, Context& context, std:
     report.refine = refine_complex(grid.complex, *size, options.volume, context);
   give_back_free_memory();
   improve(grid.complex, *size, options, report, context);
-  if (!all_options.output.sizes) size.reset();
+  const bool wants_fit = is_page_name(all_options.output.report) && !makes_stretched_cells(options, size.get());
+  if (!all_options.output.sizes && !wants_fit) size.reset();
   give_back_free_memory();
   outcome.mesh = to_mesh(std::move(grid), model, context.threads);
   limit.end();
   refine_levels(outcome, all_options, geometry, context);
-  if (size) add_size_field(outcome.mesh, *scale_sizes(size, 1 / coarsening(all_options)), context);
-  give_back_free_memory();
+  if (size) size = scale_sizes(size, 1 / coarsening(all_options));
+  if (all_options.output.sizes) add_size_field(outcome.mesh, *size, context);
   const StageTimer timer(context, "measure");
+  if (wants_fit) report.size_fit = measure_size_fit(outcome.mesh, *size, context);
+  size.reset();
+  give_back_free_memory();
   report.quality = measure_quality(outcome.mesh, context);
   return outcome;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "delfront/errors.hpp"
 #include "delfront/geometry_text.hpp"
@@ -14,6 +15,7 @@
 #include "pipeline/geometry_job.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/quantities.hpp"
+#include "pipeline/report_files.hpp"
 #include "pipeline/run.hpp"
 
 namespace delfront {
@@ -63,6 +65,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 void check_files_differ(const Options& options) {
   std::vector<std::string> taken = options.input.files;
   if (!options.refine.geometry.empty()) taken.push_back(options.refine.geometry);
+  for (const std::string& job : job_files(options)) taken.push_back(job);
   const auto add = [&](const std::string& path, const std::string& key) {
     if (path.empty()) return;
     if (const std::string* other = find_same_file(path, taken))
@@ -74,7 +77,7 @@ void check_files_differ(const Options& options) {
   if (writes_grid(options))
     for (std::size_t i = 0; i < options.output.files.size(); ++i)
       add(options.output.files[i], fmt::format("output.files[{}]", i));
-  add(options.output.report, "output.report");
+  for (const std::string& path : report_files(options.output.report)) add(path, "output.report");
   add(options.output.defects, "output.defects");
 }
 
@@ -145,13 +148,26 @@ void check_files(const Options& options, const JobExtras& extras) {
       check_writable(path);
     });
   if (writes_grid(options)) check_solver(options);
-  for (const auto& [key, path] :
-       {std::pair{"output.report", options.output.report}, {"output.defects", options.output.defects}})
-    if (!path.empty()) with_place(options, key, [&path = path] { check_writable(path); });
+  for (const std::string& path : report_files(options.output.report))
+    with_place(options, "output.report", [&] { check_writable(path); });
+  if (const std::string& path = options.output.defects; !path.empty())
+    with_place(options, "output.defects", [&] { check_writable(path); });
   check_files_differ(options);
 }
 
 }  // namespace
+
+std::vector<std::string> job_files(const Options& options) {
+  std::set<std::string> files;
+  for (const auto& [key, place] : options.set_at) {
+    std::string file = place.substr(0, place.find_last_not_of("0123456789") + 1);
+    if (file.size() < place.size() && file.ends_with(':')) file.pop_back();
+    std::error_code ignored;
+    for (const std::string& name : {place, file})
+      if (fs::is_regular_file(name, ignored)) files.insert(name);
+  }
+  return {files.begin(), files.end()};
+}
 
 const std::string* find_same_file(const std::string& path, const std::vector<std::string>& others) {
   const auto found =

@@ -21,6 +21,9 @@ void check_output_units(const Options& options);
 /// @throws UsageError  a unit while that of the model is not known, hmin above hmax
 void resolve_lengths(Options& options, const LengthScale& scale);
 
+/// @return the job files that options were read from, by where they were set ("case.toml:12")
+std::vector<std::string> job_files(const Options& options);
+
 /// @return the first of `others` that writing `path` would destroy, or nullptr
 const std::string* find_same_file(const std::string& path, const std::vector<std::string>& others);
 

@@ -101,6 +101,7 @@ Outcome generate_planar_in_levels(const PlanarDomain& domain, const Options& opt
     outcome = fill_planar(std::move(prepared), domain, coarse, context);
   }
   if (options.refine.levels == 0) return outcome;
+  outcome.report.size_fit.reset();  // that of the coarse grid
   refine_levels(outcome, options, geometry, context);
   const StageTimer timer(context, "measure");
   outcome.report.quality = measure_quality(outcome.mesh, context);

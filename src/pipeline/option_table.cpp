@@ -254,7 +254,8 @@ std::vector<OptionRow> build_table() {
       "the case; files that exist are kept",
       [](auto& o) -> auto& { return o.output.solver; }, starter_solvers()));
   add(text_row(
-      "output.report", "--report", "FILE", "report of the run as JSON, written also when the run fails",
+      "output.report", "--report", "FILE",
+      "report of the run as JSON, written also when the run fails; NAME.html: a page to read, with NAME.json beside it",
       [](auto& o) -> auto& { return o.output.report; }));
   add(text_row(
       "output.defects", "--defects", "FILE", "where defects are shown (.vtp); by default beside the first output",

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/report_json.hpp"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "delfront/version.hpp"
 #include "io/output.hpp"
+#include "mesh/cell_geometry.hpp"
 #include "pipeline/option_table.hpp"
+#include "pipeline/quantities.hpp"
+#include "pipeline/run.hpp"
 
 namespace delfront {
 
@@ -73,6 +78,10 @@ Json to_json(const Measure& m) {
       {"mean", number(m.mean)},
       {"histogram", {{"low", number(m.histogram_low)}, {"high", number(m.histogram_high)}, {"counts", m.histogram}}},
       {"worst", worst}};
+}
+
+Json to_json(const SizeFit& fit) {
+  return {{"ratio", to_json(fit.ratio)}, {"share_of_right_sides", number(fit.share_right)}};
 }
 
 Json to_json(const SurfaceComponent& c) {
@@ -245,19 +254,6 @@ Json geometry_json(const std::vector<GeometryGrid>& grids) {
   return result;
 }
 
-Json groups_json(const Mesh& mesh, int dim) {
-  std::vector<std::size_t> count(mesh.groups.size());
-  for (const CellBlock& block : mesh.blocks)
-    for (const GroupId group : block.group)
-      if (dimension(block.type) == dim && group.is_valid()) ++count[group.index()];
-  Json result = Json::array();
-  for (std::size_t g = 0; g < count.size(); ++g) {
-    const Group& group = mesh.groups[GroupId(g)];
-    if (group.dimension == dim) result.push_back({{"name", group.name}, {"kind", group.kind}, {"num_cells", count[g]}});
-  }
-  return result;
-}
-
 Json inputs_json(const std::vector<InputFile>& inputs) {
   Json result = Json::array();
   for (const InputFile& file : inputs)
@@ -340,6 +336,53 @@ Json to_json(const RefineGridReport& r) {
           {"groups_not_in_geometry", r.groups_not_in_model}};
 }
 
+/// Length, area or volume of one cell; 0 of a point, NaN of what has no fixed shape.
+static double measure_of(const Mesh& mesh, CellType type, std::span<const VertexId> vertices) {
+  std::vector<Point> corners;
+  for (const VertexId v : vertices) corners.push_back(mesh.points[v]);
+  if (type == CellType::vertex) return 0;
+  if (type == CellType::line) return distance(corners[0], corners[1]);
+  if (dimension(type) == 2) return length(facet_geometry(corners).area);
+  const CellShape& shape = shape_of(type);
+  if (shape.num_facets == 0) return std::nan("");
+  std::vector<FacetGeometry> facets;
+  for (int f = 0; f < shape.num_facets; ++f) {
+    const LocalFacet& local = shape.facets[f];
+    std::array<Point, 4> p;
+    for (int i = 0; i < local.num_vertices; ++i) p[i] = corners[local.vertices[i]];
+    facets.push_back(facet_geometry({p.data(), static_cast<std::size_t>(local.num_vertices)}));
+  }
+  return cell_geometry(corners, shape, facets).volume;
+}
+
+Json groups_json(const Mesh& mesh, int dim, double factor, const std::map<std::string, std::string>& colours) {
+  std::vector<std::size_t> count(mesh.groups.size());
+  std::vector<double> measure(mesh.groups.size());
+  for (const CellBlock& block : mesh.blocks) {
+    if (dimension(block.type) != dim) continue;
+    for (std::size_t cell = 0; cell < block.group.size(); ++cell) {
+      const GroupId group = block.group[cell];
+      if (!group.is_valid()) continue;
+      ++count[group.index()];
+      measure[group.index()] += measure_of(mesh, block.type, block[cell]);
+    }
+  }
+  Json result = Json::array();
+  for (std::size_t g = 0; g < count.size(); ++g) {
+    const Group& group = mesh.groups[GroupId(g)];
+    if (group.dimension != dim) continue;
+    const auto colour = colours.find(group.name);
+    result.push_back({{"name", group.name},
+                      {"kind", group.kind},
+                      {"colour", colour == colours.end() ? "" : colour->second},
+                      {"num_cells", count[g]},
+                      {"measure", number(std::pow(factor, dim) * measure[g])}});
+  }
+  return result;
+}
+
+Json options_json(const Options& options) { return to_json(option_tree(options)); }
+
 const char* severity_name(Severity severity) {
   switch (severity) {
     case Severity::note:
@@ -384,11 +427,18 @@ void write_text_file(const std::string& path, const std::string& text) {
   file.commit();
 }
 
+/// The mesh is as it was written, perhaps in other units than all else. @return what its lengths are times of
+static double units_of_mesh(const JobResult& result, const Options& options) {
+  const bool is_rescaled = !options.output.units.empty() && writes_grid(options) && result.scale.metres_per_unit > 0;
+  return is_rescaled ? metres_per_unit(options.output.units) / result.scale.metres_per_unit : 1;
+}
+
 std::string report_json(const JobResult& result, const Options& options, const std::string& command) {
   Json stages = Json::array();
   for (const StageTime& stage : result.stage_times)
     stages.push_back({{"stage", stage.stage}, {"seconds", number(stage.seconds)}});
   const std::size_t cells = result.report.quality.num_cells;
+  const double factor = units_of_mesh(result, options);
   Json json = {
       {"delfront", kVersion},
       {"command", command},
@@ -398,7 +448,7 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"places", to_json(result.places, kMaxPlaces)},
       {"stage", result.stage},
       {"inputs", inputs_json(result.inputs)},
-      {"options", to_json(option_tree(options))},
+      {"options", options_json(options)},
       {"scale",
        {{"diagonal", number(result.scale.diagonal)},
         {"longest_side", number(result.scale.longest_side)},
@@ -414,10 +464,12 @@ std::string report_json(const JobResult& result, const Options& options, const s
       {"improve", to_json(result.report.improve)},
       {"levels", to_json(result.report.levels)},
       {"quality", to_json(result.report.quality)},
-      {"boundaries", groups_json(result.mesh, 2)},
-      {"regions", groups_json(result.mesh, 3)},
-      {"curves", result.mesh.dimension == 3 ? groups_json(result.mesh, 1) : Json::array()},
-      {"points", groups_json(result.mesh, 0)},
+      {"size_fit", result.report.size_fit ? to_json(*result.report.size_fit) : Json(nullptr)},
+      {"grid_findings", result.grid_findings ? to_json(*result.grid_findings) : Json(nullptr)},
+      {"boundaries", groups_json(result.mesh, 2, factor, result.colours)},
+      {"regions", groups_json(result.mesh, 3, factor)},
+      {"curves", groups_json(result.mesh, 1, factor)},
+      {"points", groups_json(result.mesh, 0, factor)},
       {"estimate", result.estimate ? to_json(*result.estimate) : Json(nullptr)},
       {"failed_gates", result.failed_gates},
       {"files_written", result.files_written},

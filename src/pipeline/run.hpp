@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
+#include <string>
 #include <vector>
 
 #include "delfront/context.hpp"
@@ -21,6 +23,7 @@ struct Run {
   Model geometry;  ///< where new boundary points of refine.levels belong; empty: in the middle of their edges
   std::vector<GeometryInput> smooth;  ///< inputs whose mesh is made from them
   JobExtras extras = {};
+  std::map<std::string, std::string> face_colours = {};  ///< of CAD files, see patch_colours.hpp
 };
 
 inline bool has_far_field(const Options& options) { return options.domain.enclose.shape != "none"; }

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/name_pattern.hpp"
+#include "base/report_name.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/geometry_text.hpp"
 #include "delfront/io.hpp"
@@ -24,9 +25,10 @@
 #include "pipeline/job_sizes.hpp"
 #include "pipeline/levels.hpp"
 #include "pipeline/option_table.hpp"
+#include "pipeline/patch_colours.hpp"
 #include "pipeline/planar_job.hpp"
 #include "pipeline/quantities.hpp"
-#include "pipeline/report_json.hpp"
+#include "pipeline/report_files.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/size_survey.hpp"
 #include "pipeline/surface_job.hpp"
@@ -109,7 +111,9 @@ void read_smooth(Run& run, const std::string& path) {
             [&] { smooth.look = held && held->look ? *held->look : look_at_brep(smooth.brep, run.context); });
   name_selected_faces(run.options.boundaries, path, cad, smooth);
   say_selected_faces(run, smooth);
-  run.inputs.push_back(named_surface(smooth.look.grid, smooth.brep, held ? held->stem : stem_of(path)));
+  const std::string stem = held ? held->stem : stem_of(path);
+  add_face_colours(smooth.brep, cad, stem, run.face_colours);
+  run.inputs.push_back(named_surface(smooth.look.grid, smooth.brep, stem));
   run.smooth.push_back(std::move(smooth));
 }
 
@@ -187,7 +191,9 @@ void set_boundaries(Run& run, Model& model) {
     run.far_field = add_far_field(model, coarse_far_field(options), run.result.scale, run.context);
     if (options.domain.keep.empty() && options.domain.keep_points.empty()) options.domain.keep = "outside";
   }
+  const PatchesBefore before(model);
   run.far_field = apply_boundaries(boundaries, model, run.far_field);
+  run.result.colours = colours_after(before, model, run.face_colours);
   if (has_far_field(options)) {
     for (Patch& patch : model.patches)
       if (patch.kind.empty()) patch.kind = "wall";
@@ -368,12 +374,20 @@ void judge_grid(Run& run) {
   run.result.gate_failures = find_gate_failures(run.result.mesh, gates, quiet);
 }
 
+/// A page says of a grid that it is valid; that is looked at.
+void look_at_grid(Run& run) {
+  if (!is_page_name(run.options.output.report)) return;
+  const StageTimer timer(run.context, "check");
+  run.result.grid_findings = check(run.result.mesh);
+}
+
 void finish(Run& run, Outcome outcome) {
   run.result.report = std::move(outcome.report);
   run.result.mesh = std::move(outcome.mesh);
   run.context.check_cells(run.result.report.quality.num_cells);
   judge_grid(run);
   if (writes_grid(run.options)) write_outputs(run);
+  look_at_grid(run);
   if (run.result.failed_gates.empty()) return;
   run.result.exit_code = ExitCode::gate_not_met;
   run.result.error = fmt::format("the grid {}: {}",
@@ -520,17 +534,16 @@ void work_and_catch(Run& run) {
 
 /// The report of the run. That it cannot be written is the run's failure only where nothing worse happened.
 void write_report(const Options& options, const std::string& command, JobResult& result) {
-  if (options.output.report.empty()) return;
-  if (find_same_file(options.output.report, options.input.files) ||
-      find_same_file(options.output.report, options.output.files))
-    return;  // refused before the work
   try {
-    write_text_file(options.output.report, report_json(result, options, command));
+    write_report_files(options, command, result);
   } catch (const Error& e) {
     if (result.exit_code == ExitCode::done)
       put_error(result, e.exit_code, e.what());
     else
       result.warnings.push_back(fmt::format("no report: {}", e.what()));
+  } catch (const std::exception& e) {  // memory, or a mistake of ours
+    if (result.exit_code == ExitCode::done)
+      put_error(result, ExitCode::internal_error, fmt::format("the report could not be made: {}", e.what()));
   }
 }
 

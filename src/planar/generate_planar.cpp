@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/report_name.hpp"
 #include "planar/front.hpp"
 #include "planar/improve.hpp"
 #include "planar/kernel.hpp"
@@ -16,6 +17,7 @@
 #include "planar/split.hpp"
 #include "planar/to_mesh.hpp"
 #include "sizing/asked_sizes.hpp"
+#include "sizing/size_fit.hpp"
 
 namespace delfront {
 
@@ -251,6 +253,8 @@ Outcome fill_planar(PlanarPrepared prepared, const PlanarDomain& domain, const O
   if (options.output.sizes) add_size_field(outcome.mesh, *size, context);
   grid = {};
   const StageTimer timer(context, "measure");
+  if (is_page_name(options.output.report) && !is_stretched(options, *size))
+    report.size_fit = measure_size_fit(outcome.mesh, *size, context);
   report.quality = measure_quality(outcome.mesh, context);
   return outcome;
 }

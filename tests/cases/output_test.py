@@ -93,7 +93,9 @@ class Outputs(case.Case):
         report = self.report("r.json")
         self.assertEqual((report["outcome"], report["exit_code"], report["error"]), ("done", 0, None))
         self.assertRegex(report["inputs"][0]["hash"], r"^fnv1a64:[0-9a-f]{16}$")
-        self.assertEqual(report["boundaries"], [{"name": "body", "kind": "wall", "num_cells": 12}])
+        [body] = report["boundaries"]
+        self.assertAlmostEqual(body.pop("measure"), 6, places=9)
+        self.assertEqual(body, {"name": "body", "kind": "wall", "colour": "", "num_cells": 12})
         self.assertEqual(report["surface"]["num_triangles"], 12)
         self.assertGreater(report["peak_memory_bytes"], 1e6)
         self.assertIn("write", [stage["stage"] for stage in report["stages"]])

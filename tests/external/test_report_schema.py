@@ -57,9 +57,9 @@ class ReportSchema(case.Case):
         self.check = jsonschema.Draft202012Validator(SCHEMA)
         self.write("ball.stl", case.stl_ascii(case.sphere_triangles(1), "ball"))
 
-    def job(self, *arguments, code=0, check=None):
+    def job(self, *arguments, code=0, check=None, name="r.json"):
         """The report of a job, which is as the schema says."""
-        self.expect(code, *arguments, "--report", "r.json")
+        self.expect(code, *arguments, "--report", name)
         report = self.report("r.json")
         problems = [f"{list(e.absolute_path)}: {e.message}"[:300] for e in (check or self.check).iter_errors(report)]
         self.assertEqual(problems, [], arguments)
@@ -106,6 +106,18 @@ class ReportSchema(case.Case):
     def test_the_front(self):
         report = self.job("mesh", "ball.stl", "-o", "ball.vtu", "--volume-method", "front", "--growth", "1.2")
         self.assertGreater(report["front"]["cells"], 0)
+
+    def test_beside_a_page(self):
+        report = self.job("mesh", "ball.stl", "-o", "ball.vtu", "--require", "min_dihedral > 60", code=5, name="r.html")
+        self.assertEqual(report["grid_findings"], [])
+        self.assertGreater(report["size_fit"]["ratio"]["max"], 0)
+        self.job("mesh", "ball.stl", "-o", "ball.vtu", "--levels", 1, name="r.html")
+        report = self.job("refine", "ball.vtu", "-o", "fine.vtu", name="r.html",
+                          check=jsonschema.Draft202012Validator(OF_REFINE))
+        self.assertEqual(report["grid_findings"], [])
+        changed = copy.deepcopy(report)
+        changed["grid_findings"] = [{"kind": "flat_cell"}]
+        self.assertFalse(jsonschema.Draft202012Validator(OF_REFINE).is_valid(changed))
 
     def test_runs_that_fail(self):
         self.write("open.stl", case.stl_ascii(case.box_triangles()[:-1]))
