@@ -137,9 +137,18 @@ void write_geometry(const GeometryText& geometry, const std::string& path);
 /// open
 Brep build_brep(const GeometryText& geometry, const std::string& file);
 
-/// @brief Where the file is all there is: each reversed shape must be a hole in a body (a box round its box is enough).
-/// @param file  for messages
+/// @brief Whether a shape is reversed.
+bool has_holes(const GeometryText& geometry);
+
+struct NamedGeometry {
+  GeometryText text;
+  std::string file;  ///< for messages
+};
+
+/// @brief What is gridded together: each reversed shape must be a hole in a body. By boxes alone: the innermost one
+/// round that of the hole belongs to a shape that is not reversed, to faces of a file, or is one of the bodies.
+/// @param bodies  boxes of other input
 /// @throws InputError  one lies in no body: file, line, what to try
-void check_holes(const GeometryText& geometry, const std::string& file);
+void check_holes(const std::vector<NamedGeometry>& files, const std::vector<Box>& bodies);
 
 }  // namespace delfront

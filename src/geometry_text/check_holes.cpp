@@ -39,12 +39,9 @@ bool holds(const Box& outer, const Box& inner) {
          inner.high.x <= outer.high.x && inner.high.y <= outer.high.y && inner.high.z <= outer.high.z;
 }
 
-/// Of the faces that are in no shape; empty: there are none.
-Box box_of_faces(const GeometryText& geometry, const std::string& file) {
-  if (geometry.faces.empty()) return {};
-  GeometryText faces = geometry;
-  faces.shapes.clear();
-  return box_of(build_brep(faces, file));
+double volume_of(const Box& box) {
+  const Point side = box.high - box.low;
+  return side.x * side.y * side.z;
 }
 
 Box box_of_shape(const TextShape& shape, const std::string& file) {
@@ -53,23 +50,50 @@ Box box_of_shape(const TextShape& shape, const std::string& file) {
   return box_of(build_brep(alone, file));
 }
 
+struct Part {
+  Box box;
+  bool is_hole = false;
+};
+
+/// Shapes each, the other faces together.
+void add_parts(const GeometryText& geometry, const std::string& file, std::vector<Part>& parts) {
+  for (const TextShape& shape : geometry.shapes) parts.push_back({box_of_shape(shape, file), shape.reversed});
+  if (geometry.faces.empty()) return;
+  GeometryText faces = geometry;
+  faces.shapes.clear();
+  parts.push_back({box_of(build_brep(faces, file)), false});
+}
+
+/// Whether the innermost part round it is a body.
+bool is_in_body(const Box& hole, const std::vector<Part>& parts, std::size_t own) {
+  const Part* innermost = nullptr;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (i != own && holds(parts[i].box, hole) && (!innermost || volume_of(parts[i].box) < volume_of(innermost->box)))
+      innermost = &parts[i];
+  return innermost && !innermost->is_hole;
+}
+
 }  // namespace
 
-void check_holes(const GeometryText& geometry, const std::string& file) {
-  const auto& shapes = geometry.shapes;
-  if (std::none_of(shapes.begin(), shapes.end(), [](const TextShape& shape) { return shape.reversed; })) return;
-  std::vector<Box> bodies;
-  if (const Box faces = box_of_faces(geometry, file); !faces.is_empty()) bodies.push_back(faces);
-  for (const TextShape& shape : shapes)
-    if (!shape.reversed) bodies.push_back(box_of_shape(shape, file));
-  for (const TextShape& shape : shapes) {
-    if (!shape.reversed) continue;
-    const Box hole = box_of_shape(shape, file);
-    if (std::any_of(bodies.begin(), bodies.end(), [&](const Box& body) { return holds(body, hole); })) continue;
-    throw InputError(
-        fmt::format("{}:{}: shape{}: it is reversed, a hole, but lies in no body; leave out reversed, or put a body "
-                    "round it",
-                    file, shape.line.number, shape.name.empty() ? "" : " '" + shape.name + "'"));
+bool has_holes(const GeometryText& geometry) {
+  return std::any_of(geometry.shapes.begin(), geometry.shapes.end(), [](const auto& shape) { return shape.reversed; });
+}
+
+void check_holes(const std::vector<NamedGeometry>& files, const std::vector<Box>& bodies) {
+  std::vector<Part> parts;
+  for (const Box& body : bodies) parts.push_back({body, false});
+  std::size_t own = parts.size();
+  for (const auto& [geometry, file] : files) add_parts(geometry, file, parts);
+  for (const auto& [geometry, file] : files) {
+    for (const TextShape& shape : geometry.shapes) {
+      const std::size_t number = own++;
+      if (!shape.reversed || is_in_body(parts[number].box, parts, number)) continue;
+      throw InputError(
+          fmt::format("{}:{}: shape{}: it is reversed, a hole, but lies in no body, or not whole; leave out reversed, "
+                      "or put a body round it",
+                      file, shape.line.number, shape.name.empty() ? "" : " '" + shape.name + "'"));
+    }
+    own += !geometry.faces.empty();
   }
 }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "base/nearest_name.hpp"
+#include "base/plain_name.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
 #include "io/formats.hpp"
@@ -205,9 +207,28 @@ bool may_have_beside(const std::string& path) {
   return !std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored);
 }
 
-}  // namespace
+/// Names that no terminal and few files can hold get other letters, and numbers where that makes two the same.
+void plain_names(const std::string& path, Mesh& mesh, Context& context) {
+  std::set<std::pair<int, std::string>> taken;
+  std::size_t changed = 0;
+  for (const Group& group : mesh.groups) taken.emplace(group.dimension, group.name);
+  for (Group& group : mesh.groups) {
+    const std::string plain = plain_name(group.name);
+    if (plain == group.name) continue;
+    std::string name = plain;
+    for (int number = 2; !taken.emplace(group.dimension, name).second; ++number)
+      name = fmt::format("{}_{}", plain, number);
+    group.name = name;
+    ++changed;
+  }
+  if (changed > 0)
+    context.warn(
+        fmt::format("{}: {} name{} hold{} control characters, or bytes that are no text (UTF-8): they are '_' "
+                    "here",
+                    path, changed, changed == 1 ? "" : "s", changed == 1 ? "s" : ""));
+}
 
-Mesh read_mesh(const std::string& path, Context& context, const std::string& format) {
+Mesh read_any(const std::string& path, Context& context, const std::string& format) {
   const Format& found = find_format(path, format, false);
   if (is_folder(found)) return read_openfoam(path, context);
   if (found.read_file) return found.read_file(path, context);
@@ -216,6 +237,14 @@ Mesh read_mesh(const std::string& path, Context& context, const std::string& for
   Mesh mesh = found.read(bytes.view(), path, context);
   if (found.read == read_medit || found.read == read_meshb) read_solution_beside(path, mesh, context);
   read_beside(found.beside, path, mesh, context);
+  return mesh;
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::string& path, Context& context, const std::string& format) {
+  Mesh mesh = read_any(path, context, format);
+  plain_names(path, mesh, context);
   return mesh;
 }
 

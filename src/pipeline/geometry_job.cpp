@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/plain_name.hpp"
 #include "delfront/geometry_sizes.hpp"
 #include "delfront/geometry_text.hpp"
 #include "delfront/io.hpp"
@@ -222,9 +223,22 @@ Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
   } else {
     brep = build_brep(read_geometry(path), path);
   }
-  for (BrepFace& face : brep.faces)
-    if (face.name.empty()) face.name = geometry_stem(path);
+  for (BrepFace& face : brep.faces) face.name = face.name.empty() ? geometry_stem(path) : plain_name(face.name);
   return brep;
+}
+
+void refuse_holes_in_nothing(const std::vector<NamedMesh>& inputs, const std::vector<std::string>& files,
+                             const JobExtras& extras) {
+  std::vector<NamedGeometry> texts;
+  std::vector<Box> others;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (is_geometry_file(files[i]) && !extras.held.contains(files[i]))
+      texts.push_back({read_geometry(files[i]), files[i]});
+    else
+      others.push_back(inputs[i].mesh.bounding_box());
+  }
+  if (std::any_of(texts.begin(), texts.end(), [](const NamedGeometry& it) { return has_holes(it.text); }))
+    check_holes(texts, others);
 }
 
 std::string doubt_of(const CadReport& cad) {

@@ -62,6 +62,12 @@ bool is_smooth_input(const std::string& path, const JobExtras& extras);
 /// @par Threads  CAD files wait for each other: OpenCASCADE has settings for the whole process
 Brep read_brep(const std::string& path, Context& context, CadReport& cad);
 
+/// @brief A hole (TextShape::reversed) that lies in no body would be filled. In a far field it is a body like others.
+/// @param inputs  of the files, in their order; more may follow
+/// @throws InputError  as check_holes
+void refuse_holes_in_nothing(const std::vector<NamedMesh>& inputs, const std::vector<std::string>& files,
+                             const JobExtras& extras);
+
 /// @brief The first thing about a CAD file that may keep it from being gridded; empty: nothing.
 std::string doubt_of(const CadReport& cad);
 

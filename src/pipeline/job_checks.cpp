@@ -62,6 +62,24 @@ bool is_same_file(const std::string& a, const std::string& b) {
 }
 
 /// No file may be written over an input or over another output of the same run.
+/// Whether a path is that of a file of a case, or of a starter file: those of the run itself.
+bool is_of_grid(const Options& options, const std::string& path, const std::string& grid) {
+  const std::string& format = format_of(grid, options.output.format, true).name;
+  if (format == "su2" && options.output.solver == "su2")
+    return is_same_file(path, fs::path(grid).replace_extension(".cfg").string());
+  if (format != "openfoam") return false;
+  std::error_code ignored;
+  const fs::path below = fs::weakly_canonical(path, ignored).lexically_relative(fs::weakly_canonical(grid, ignored));
+  return !below.empty() && (*below.begin() == "constant" || *below.begin() == "system" || *below.begin() == "0");
+}
+
+/// What the grid consists of and its solver's files are written by the run, too.
+void check_stands_beside(const Options& options, const std::string& path, const std::string& key) {
+  for (const std::string& grid : options.output.files)
+    if (!path.empty() && is_of_grid(options, path, grid))
+      throw usage_error(options, key, fmt::format("{} is one of the files of {}; give it another name", path, grid));
+}
+
 void check_files_differ(const Options& options) {
   std::vector<std::string> taken = options.input.files;
   if (!options.refine.geometry.empty()) taken.push_back(options.refine.geometry);
@@ -79,6 +97,8 @@ void check_files_differ(const Options& options) {
       add(options.output.files[i], fmt::format("output.files[{}]", i));
   for (const std::string& path : report_files(options.output.report)) add(path, "output.report");
   add(options.output.defects, "output.defects");
+  if (writes_grid(options)) check_stands_beside(options, options.output.report, "output.report");
+  if (writes_grid(options)) check_stands_beside(options, options.output.defects, "output.defects");
 }
 
 /// A grid without its cells is never written under the asked name.
@@ -148,6 +168,8 @@ void check_files(const Options& options, const JobExtras& extras) {
       check_writable(path);
     });
   if (writes_grid(options)) check_solver(options);
+  if (options.output.report == "-")
+    throw usage_error(options, "output.report", "it goes to a file, not to the terminal; give it a name");
   for (const std::string& path : report_files(options.output.report))
     with_place(options, "output.report", [&] { check_writable(path); });
   if (const std::string& path = options.output.defects; !path.empty())

@@ -98,8 +98,6 @@ void read_smooth(Run& run, const std::string& path) {
   {
     const StageTimer timer(run.context, "read");
     if (held) cad = held->cad;
-    const bool is_alone = run.options.input.files.size() == 1 && !has_far_field(run.options);
-    if (is_alone && !held && !is_cad_file(path)) check_holes(delfront::read_geometry(path), path);
     smooth.brep = held ? *held->brep : read_brep(path, run.context, cad);
     smooth.doubt = doubt_of(cad);
   }
@@ -136,6 +134,7 @@ void read_inputs(Run& run) {
     run.result.inputs.push_back(std::move(file));
   }
   const StageTimer timer(run.context, "read");
+  if (!has_far_field(run.options)) refuse_holes_in_nothing(run.inputs, files, run.extras);
   std::vector<NamedMesh> curves = curves_of_job(coarse_options(run.options), run.inputs, run.context);
   std::move(curves.begin(), curves.end(), std::back_inserter(run.inputs));
   run.context.progress("read", files.size(), files.size(), "files");

@@ -118,6 +118,19 @@ class SmoothGeometry(case.Case):
         report = json.loads((self.folder / "body.json").read_text())
         self.assertAlmostEqual(report["quality"]["volume"], 64 - 8, places=9)
 
+    def test_holes_in_no_body_of_several_files_are_refused(self):
+        box = '[[shape]]\ntype = "box"\nname = "{}"\nmin = [{}, 0, 0]\nmax = [{}, {}, {}]\nreversed = {}\n'
+        self.write("body.geom.toml", box.format("body", 0, 4, 4, 4, "false"))
+        self.expect(0, "mesh", "body.geom.toml", "-o", "body.stl", "--stop-after", "surface", "--hmax", "2")
+        self.write("beside.geom.toml", box.format("hole", 10, 11, 1, 1, "true"))
+        self.write("round.geom.toml", box.format("hole", -1, 5, 5, 5, "true"))
+        for body in ("body.geom.toml", "body.stl"):
+            for hole in ("beside.geom.toml", "round.geom.toml"):
+                self.expect(3, "mesh", body, hole, "-o", "grid.vtu", "--hmax", "1", says=[f"{hole}:1", "lies in no body"])
+        self.write("twice.geom.toml", "".join('[[shape]]\ntype = "box"\nmin = [%d, %d, %d]\nmax = [%d, %d, %d]\nreversed = %s\n' %
+                                              (3 * (a,) + 3 * (9 - a,) + (r,)) for a, r in ((0, "false"), (1, "true"), (3, "true"))))
+        self.expect(3, "mesh", "twice.geom.toml", "-o", "grid.vtu", says=["twice.geom.toml:11", "lies in no body"])
+
     def test_a_hole_in_a_far_field_is_taken(self):
         self.write("hole.geom.toml", '[[shape]]\ntype = "box"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nreversed = true\n')
         self.expect(0, "mesh", "hole.geom.toml", "-o", "flow.vtu", "--farfield", "box:3c", "--accuracy", "coarse")

@@ -226,6 +226,13 @@ class Failing(case.Case):
         self.expect(7, "refine", "ball.stl", "-o", "a.vtu", "--report", "nofolder/r.html", says="nofolder/r.json")
         self.assertEqual(self.files(), before)
 
+    def test_files_of_the_grid_are_not_written_over(self):
+        self.expect(0, "mesh", "ball.stl", "-o", "case/", "--solver", "openfoam", "--report", "case/run.html")
+        for report in ("case/constant/polyMesh/points", "case/system/controlDict", "case/0/U"):
+            self.expect(2, "mesh", "ball.stl", "-o", "case/", "--solver", "openfoam", "--report", report, says="one of the files of case/")
+        self.expect(2, "mesh", "ball.stl", "-o", "g.su2", "--solver", "su2", "--report", "g.cfg", says="one of the files of g.su2")
+        self.expect(2, "mesh", "ball.stl", "-o", "g.su2", "--report", "-", says="goes to a file")
+
     def test_the_job_file_is_not_written_over(self):
         job = json.dumps({"input": {"files": ["ball.stl"]}, "output": {"files": ["a.vtu"]}})
         self.write("case.json", job)
