@@ -227,6 +227,7 @@ class Failing(case.Case):
         self.assertEqual(self.files(), before)
 
     def test_files_of_the_grid_are_not_written_over(self):
+        (self.folder / "case").mkdir()
         self.expect(0, "mesh", "ball.stl", "-o", "case/", "--solver", "openfoam", "--report", "case/run.html")
         for report in ("case/constant/polyMesh/points", "case/system/controlDict", "case/0/U"):
             self.expect(2, "mesh", "ball.stl", "-o", "case/", "--solver", "openfoam", "--report", report, says="one of the files of case/")
