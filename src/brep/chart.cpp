@@ -41,7 +41,7 @@ RisingTable::RisingTable(double first, double step, std::vector<double> values)
 
 double RisingTable::at(double x) const {
   const double place = (x - first_) / step_;
-  const auto i = std::size_t(std::clamp(place, 0.0, double(values_.size() - 2)));
+  const auto i = std::size_t(std::min(std::max(0.0, place), double(values_.size() - 2)));  // 0 where it is no number
   const double f = place - double(i);
   return (1 - f) * values_[i] + f * values_[i + 1];
 }

@@ -160,7 +160,8 @@ ChartLook look_at(const Chart& chart, std::span<const Point2> places, const Para
     for (int k = 0; k < 4; ++k) {
       const double ahead = (k % 2 ? -1 : 1) * h / std::max(length(k < 2 ? place.x : place.y), 1e-300);
       const Point2 to = chart.to_uv(k < 2 ? Point2{xy.x + ahead, xy.y} : Point2{xy.x, xy.y + ahead});
-      if (to.x < box.low.x || to.x > box.high.x || to.y < box.low.y || to.y > box.high.y) continue;
+      const bool is_within = to.x >= box.low.x && to.x <= box.high.x && to.y >= box.low.y && to.y <= box.high.y;
+      if (!is_within) continue;  // far beyond it need be no number
       const double there = scale(chart.place(chart.to_chart(to)));
       const double change = std::max(here / there, there / here);
       if (!(change > look.change)) continue;
