@@ -101,7 +101,8 @@ void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::
     kinds.insert(group.kind);
   }
   if (num_groups > 0)
-    notes.push_back(fmt::format("{}: {} left out ({}); VTU, VTP and Medit .mesh keep them", format,
+    notes.push_back(fmt::format("{}: {} left out ({}); VTU, VTP and Medit .mesh keep them, files of --solver use them",
+                                format,
                                 num_groups == 1 ? "the boundary kind of 1 group is"
                                                 : fmt::format("the boundary kinds of {} groups are", num_groups),
                                 fmt::join(kinds, ", ")));

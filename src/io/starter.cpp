@@ -162,13 +162,29 @@ void note_assumed_walls(std::vector<StarterBoundary>& boundaries, const std::str
   }
   if (!names.empty())
     notes.push_back(
-        fmt::format("starter files of {}: no kind says what happens at {}, so a wall is assumed; give e.g. "
-                    "boundaries.{}.kind = \"inlet\"",
-                    path, fmt::join(names, ", "), names[0]));
+        fmt::format("starter files of {}: no kind says what happens at {}, so a wall is assumed; give their "
+                    "kinds, e.g. boundaries.NAME.kind = \"inlet\", by the names they have in the input",
+                    path, fmt::join(names, ", ")));
+}
+
+/// OpenFOAM has these for grids one cell thick, or wedges of one cell; no grid of tetrahedra is either.
+void note_flat_kinds(const std::vector<StarterBoundary>& boundaries, const std::string& path,
+                     std::vector<std::string>& notes) {
+  std::vector<std::string> names;
+  for (const StarterBoundary& boundary : boundaries)
+    if (boundary.patch_type == "empty" || boundary.patch_type == "wedge") names.push_back(boundary.name);
+  if (!names.empty())
+    notes.push_back(
+        fmt::format("{}: OpenFOAM has the kinds empty and wedge for grids one cell thick, and refuses {} in this one; "
+                    "symmetry is what a plane of symmetry needs",
+                    path, fmt::join(names, ", ")));
 }
 
 StarterFiles start_su2(const Mesh& mesh, const std::string& path, Context& context) {
   StarterFiles result;
+  if (const std::string name = fs::path(path).filename().string(); name.find_first_of(" \t%") != std::string::npos)
+    result.notes.push_back(
+        fmt::format("'{}': SU2 takes blanks and % for the end of a file's name; give the grid another one", name));
   std::vector<StarterBoundary> boundaries = su2_boundaries(mesh);
   note_assumed_walls(boundaries, path, result.notes);
   write_files({su2_starter(mesh, path, boundaries)}, boundaries, context, result);
@@ -181,6 +197,7 @@ StarterFiles start_openfoam(const Mesh& mesh, const std::string& path, Context& 
   while (folder.size() > 1 && folder.ends_with('/')) folder.pop_back();
   std::vector<StarterBoundary> boundaries = foam_boundaries(mesh, folder);
   note_assumed_walls(boundaries, path, result.notes);
+  note_flat_kinds(boundaries, path, result.notes);
   CaseFolders folders;
   for (const char* part : {"0", "constant", "system"}) folders.make(fmt::format("{}/{}", folder, part));
   write_files(foam_starter(folder, boundaries), boundaries, context, result);

@@ -158,6 +158,22 @@ class FoamStarter {
               "// RAS with kOmegaSST, and 0/ would hold k, omega and nut.\nsimulationType  laminar;\n");
   }
 
+  /// Of the walls whose kind was given; what is only assumed to be one, or a floor, the user leaves out.
+  std::string forces() const {
+    std::vector<std::string> walls;
+    for (const StarterBoundary& boundary : boundaries_)
+      if (boundary.patch_type == "wall") walls.push_back(boundary.name);
+    if (walls.empty()) return "";
+    return fmt::format(
+        "functions\n{{\n    // Coefficients of the force on these patches, in postProcessing/. CHANGE: leave out "
+        "floors and sides;\n"
+        "    // directions, speed (m/s), reference length (m) and area (m^2) are yours to say.\n"
+        "    forces\n    {{\n        type forceCoeffs; libs (\"libforces.so\");\n        patches ({});\n"
+        "        rho rhoInf; rhoInf 1.2; magUInf {}; lRef 1; Aref 1;\n"
+        "        dragDir (1 0 0); liftDir (0 0 1); pitchAxis (0 1 0); CofR (0 0 0);\n    }}\n}}\n",
+        fmt::join(walls, " "), starter::kSpeed);
+  }
+
   void add_system() {
     add("system", "controlDict", "dictionary",
         "// simpleFoam starts from 0/U as it is; potentialFoam before it overwrites 0/U. CHANGE endTime: iterations.\n"
@@ -165,7 +181,8 @@ class FoamStarter {
         "endTime         500;\ndeltaT          1;\nwriteControl    timeStep;\nwriteInterval   100;\npurgeWrite      "
         "2;\n"
         "writeFormat     ascii;\nwritePrecision  8;\nwriteCompression off;\ntimeFormat      general;\n"
-        "timePrecision   6;\nrunTimeModifiable true;\n");
+        "timePrecision   6;\nrunTimeModifiable true;\n" +
+            forces());
     add("system", "fvSchemes", "dictionary",
         "// Cautious, for grids of tetrahedra: limited gradients, half of the correction for non-orthogonality.\n"
         "ddtSchemes { default steadyState; }\n"

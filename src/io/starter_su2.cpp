@@ -148,8 +148,8 @@ class Su2Starter {
   }
 
   void add_numerics() {
-    add("% Cautious settings for grids of tetrahedra.\n"
-        "NUM_METHOD_GRAD= WEIGHTED_LEAST_SQUARES\nCFL_NUMBER= 5.0\nCFL_ADAPT= NO\nMGLEVEL= 0\n");
+    add(fmt::format("% Cautious settings for grids of {}.\n", mesh_.dimension == 2 ? "triangles" : "tetrahedra"));
+    add("NUM_METHOD_GRAD= WEIGHTED_LEAST_SQUARES\nCFL_NUMBER= 5.0\nCFL_ADAPT= NO\nMGLEVEL= 0\n");
     add(is_compressible_ ? "CONV_NUM_METHOD_FLOW= JST\nJST_SENSOR_COEFF= ( 0.5, 0.02 )\n"
                          : "CONV_NUM_METHOD_FLOW= FDS\nMUSCL_FLOW= YES\nSLOPE_LIMITER_FLOW= VENKATAKRISHNAN\n"
                            "VENKAT_LIMITER_COEFF= 0.05\n");

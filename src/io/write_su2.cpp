@@ -3,6 +3,8 @@
 // markers for SU2 and are left out, as are region names; both are said.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "delfront/errors.hpp"
 #include "io/cells.hpp"
 #include "io/formats.hpp"
@@ -79,8 +81,15 @@ void write_markers(Output& out, const std::vector<Marker>& markers) {
 
 /// One a group, in the order of mesh.groups; faces without a group make a last one.
 std::vector<Marker> make_markers(const Mesh& mesh, std::vector<std::string>& notes) {
-  const std::vector<std::string> names =
+  std::vector<std::string> names =
       fit_names(mesh, NameRule::word, "SU2", notes, {mesh.dimension - 1, mesh.dimension - 1});
+  for (std::string& name : names)
+    if (name == "NONE") {
+      std::string other = "NONE_";
+      while (std::find(names.begin(), names.end(), other) != names.end()) other += '_';
+      notes.push_back(fmt::format("SU2: 'NONE' stands for no marker at all: that boundary is written as '{}'", other));
+      name = other;
+    }
   std::vector<Marker> by_group(mesh.groups.size() + 1);
   std::size_t num_inner = 0, num_regions = 0;
   for (const CellBlock& block : mesh.blocks) {

@@ -50,6 +50,8 @@ std::vector<std::string> as_colours(const JobValue& v) {
 }
 
 Point as_normal(const JobValue& v) {
+  if (v.is(JobValue::Kind::list) && !v.items.empty() && v.items[0].is(JobValue::Kind::list))
+    throw BadValue("a normal is one direction; several are for { expression = \"…\" }, or boundaries of one kind each");
   const Point normal = as_point(v);
   if (!(length(normal) > 0)) throw BadValue("a normal of no length looks nowhere");
   return normal;

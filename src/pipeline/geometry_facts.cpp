@@ -90,7 +90,9 @@ std::string cad_text(const CadReport& cad) {
 }
 
 std::string place_text(const FacePlace& place) {
-  const Point at = place.at;
+  Point at = place.at;
+  for (int k = 0; k < 3; ++k)  // what is next to nothing beside the rest
+    if (std::abs(at[k]) < 1e-9 * (length(place.at) + place.box.diagonal())) at[k] = 0;
   std::string text = fmt::format("area {:.4g} at ({:.4g}, {:.4g}, {:.4g}), ", place.area, at.x, at.y, at.z);
   if (!place.normal) return text;
   const auto rounded = [](double x) { return std::round(1000 * x) / 1000 + 0.0; };  // -0 becomes 0
@@ -210,11 +212,12 @@ std::string geometry_text(const Brep& brep, const std::vector<FacePlace>& places
                         what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles,
                         is_quick ? "at a first look" : "of usual size", made.min_angle_deg);
   }
+  if (brep.faces.size() > kShown)
+    text += fmt::format("               and {} more faces (--json lists all)\n", brep.faces.size() - kShown);
   for (std::size_t r = 0; r < std::min(kShown, brep.regions.size()); ++r)
     text += fmt::format("solid {:<8} {}\n", r + 1, brep.regions[r].empty() ? "has no name" : brep.regions[r]);
   if (brep.regions.size() > kShown)
     text += fmt::format("               and {} more solids\n", brep.regions.size() - kShown);
-  if (brep.faces.size() > kShown) text += fmt::format("               and {} more faces\n", brep.faces.size() - kShown);
   return text;
 }
 

@@ -304,7 +304,7 @@ void write_starters(Run& run, const std::string& path) {
     made.notes.push_back(
         fmt::format("{}: coordinates are in {}, and the solver takes them as metres; rescale them with "
                     "--output-units m",
-                    path, unit));
+                    path, unit == "in" ? "inches" : unit));
   for (const std::string& note : made.notes) run.context.warn(note);
   StarterFiles& all = run.result.starter;
   std::move(made.written.begin(), made.written.end(), std::back_inserter(all.written));

@@ -66,6 +66,14 @@ std::string options_lists(const Json& options, const Json& defaults) {
   return text;
 }
 
+std::string file_rows(const char* what, const Json& files) {
+  std::string rows;
+  for (const Json& file : files)
+    rows += fmt::format("<tr><td>{}</td><td class=\"mono\">{}</td><td></td><td></td></tr>", what,
+                        html(file.get<std::string>()));
+  return rows;
+}
+
 std::string files_table(const Json& r) {
   std::string rows;
   for (const Json& input : part_of(r, "inputs"))
@@ -76,9 +84,10 @@ std::string files_table(const Json& r) {
   for (const char* key : {"input", "geometry"})
     if (const std::string file = text_of(r, key); !file.empty())
       rows += fmt::format("<tr><td>read</td><td class=\"mono\">{}</td><td></td><td></td></tr>", html(file));
-  for (const Json& file : part_of(r, "files_written"))
-    rows += fmt::format("<tr><td>written</td><td class=\"mono\">{}</td><td></td><td></td></tr>",
-                        html(file.get<std::string>()));
+  rows += file_rows("written", part_of(r, "files_written"));
+  const Json& starter = part_of(r, "starter_files");
+  rows += file_rows("written", part_of(starter, "written"));
+  rows += file_rows("kept", part_of(starter, "kept"));
   return rows.empty() ? "" : "<div class=\"wide\"><table>" + rows + "</table></div>";
 }
 

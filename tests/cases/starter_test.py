@@ -129,6 +129,13 @@ class Su2(case.Case):
         self.assertEqual(self.report("r.json")["starter_files"], {"written": [], "kept": ["box.cfg"]})
         self.assertEqual(self.report("r.json")["files_written"], ["box.su2"])
 
+    def test_words_of_su2_are_no_names(self):
+        self.write("box.stl", box_of_patches().replace("xmin", "NONE").replace("ymin", "NONE_"))
+        self.expect(0, "mesh", "box.stl", "-o", "my box.su2", "--solver", "su2",
+                    says=["is written as 'NONE__'", "'my box.su2': SU2 takes blanks"])
+        settings = self.check_names_each_marker_once((self.folder / "my box.cfg").read_text())
+        self.assertEqual(set(su2_list(settings["MARKER_EULER"])), {"NONE_", "NONE__", "xmax", "ymax", "zmin", "zmax"})
+
     def test_convert(self):
         self.write("box.stl", box_of_patches())
         self.expect(0, "mesh", "box.stl", "-o", "box.vtu", *kinds_flags(KINDS))
@@ -156,6 +163,9 @@ class OpenFoam(case.Case):
             result[name] = boundary_entries((self.folder / "foam/0" / name).read_text())
             self.assertEqual(list(result[name]), patches, name)
         return result
+
+    def test_kinds_of_flat_cases_are_said_to_be_refused(self):
+        self.make(kinds={"ymin": "empty", "ymax": "wedge"}, says="OpenFOAM has the kinds empty and wedge for grids one cell thick, and refuses ymin, ymax")
 
     def test_every_field_names_every_patch_by_its_kind(self):
         self.make(says="starter files  foam/0/U")
