@@ -72,6 +72,11 @@ Mesh read_cgns(const std::string& path, Context& context);
 void write_cgns(const Mesh& mesh, const std::string& path, const std::string& shown_path, const WriteOptions& options,
                 Context& context, std::vector<std::string>& notes);
 
+/// @brief Formats in HDF5, where it was there when this was built; by name too.
+Mesh read_vtkhdf(const std::string& path, Context& context);
+void write_vtkhdf(const Mesh& mesh, const std::string& path, const std::string& shown_path, const WriteOptions& options,
+                  Context& context, std::vector<std::string>& notes);
+
 /// @brief The files of a polyMesh; the zones may be empty.
 struct FoamFiles {
   std::string_view points, faces, owner, neighbour, boundary, cell_zones, face_zones;

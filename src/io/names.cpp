@@ -27,6 +27,7 @@ char fit_character(char c, NameRule rule) {
       return c;
     case NameRule::quoted:
       return c == '"' ? '\'' : c;
+    case NameRule::hdf5:
     case NameRule::cgns:
       return c == '/' ? '_' : c;
     case NameRule::word:

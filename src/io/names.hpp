@@ -14,7 +14,8 @@ enum class NameRule {
   quoted,     ///< as line, and no double quotes (MSH)
   word,       ///< as line, and no blanks nor any of %=,;()"'{} (SU2)
   foam_word,  ///< letters, digits, '_', '-', '.', beginning with a letter or '_' (OpenFOAM, Abaqus, Fluent)
-  cgns        ///< as line, without '/', and at most 32 characters (CGNS)
+  hdf5,       ///< as line, without '/' (VTKHDF)
+  cgns        ///< as hdf5, and at most 32 characters (CGNS)
 };
 
 /// @brief The name of each group as the format holds it, unique among those of one dimension (numbered _2, _3, …).

@@ -59,6 +59,9 @@ const std::vector<Format>& table() {
       {"dat", "airfoil coordinates (Selig, Lednicer)", {".dat"}, read_dat, nullptr},
       {"vtu", "VTK XML unstructured grid", {".vtu"}, read_vtu, write_vtu},
       {"vtp", "VTK XML surface", {".vtp"}, read_vtp, write_vtp},
+#ifdef DELFRONT_HAS_HDF5
+      {"vtkhdf", "VTKHDF unstructured grid", {".vtkhdf", ".hdf"}, nullptr, nullptr, {}, read_vtkhdf, write_vtkhdf},
+#endif
       {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_any_msh, write_msh},
       {"pos", "Gmsh parsed views (ASCII)", {".pos"}, read_pos, nullptr},
       {"medit", "Medit, MMG", {".mesh"}, read_medit, write_medit},
@@ -82,6 +85,24 @@ const std::vector<Format>& table() {
       {kFolderFormat, "OpenFOAM polyMesh in a case folder", {"/"}, nullptr, nullptr},
   };
   return kTable;
+}
+
+/// What this build leaves out, since a library was not installed.
+struct LeftOut {
+  const char* name;
+  std::vector<std::string> extensions;
+  const char* library;
+};
+const std::vector<LeftOut>& left_out_formats() {
+  static const std::vector<LeftOut> kLeftOut = {
+#ifndef DELFRONT_HAS_HDF5
+      {"vtkhdf", {".vtkhdf", ".hdf"}, "HDF5 (Debian: libhdf5-dev)"},
+#endif
+#ifndef DELFRONT_HAS_CGNS
+      {"cgns", {".cgns"}, "the CGNS library (Debian: libcgns-dev)"},
+#endif
+  };
+  return kLeftOut;
 }
 
 bool is_folder(const Format& format) { return std::string_view(format.name) == kFolderFormat; }
@@ -134,6 +155,12 @@ const Format& find_format(const std::string& path, const std::string& name, bool
     throw UsageError(fmt::format("{}: {} cannot be {}; these can: {}", path, format.title, doing,
                                  fmt::join(known_extensions(to_write), " ")));
   }
+  for (const LeftOut& format : left_out_formats())
+    if (name.empty()
+            ? std::find(format.extensions.begin(), format.extensions.end(), extension) != format.extensions.end()
+            : name == format.name)
+      throw UsageError(fmt::format("{}: {} cannot be {}: this build has no {}; install it and build again, or use VTU",
+                                   path, format.name, doing, format.library));
   if (!name.empty()) {
     std::vector<std::string> names;
     for (const Format& format : table()) names.push_back(format.name);

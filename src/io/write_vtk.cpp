@@ -3,38 +3,19 @@
 // Names and ids of groups as vtk_names.hpp says; kind and two_sided are attributes that other readers skip.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-#include <map>
+#include <algorithm>
 
 #include "delfront/errors.hpp"
 #include "io/cells.hpp"
 #include "io/formats.hpp"
 #include "io/names.hpp"
-#include "io/vtk_names.hpp"
+#include "io/vtk_blocks.hpp"
 #include "io/vtk_output.hpp"
 #include "io/xml.hpp"
 
 namespace delfront {
 
 namespace {
-
-using Blocks = std::vector<const CellBlock*>;
-
-/// Blocks with cells of the wanted dimensions, low dimension first (the order of VTP).
-Blocks blocks_of(const Mesh& mesh, int low, int high) {
-  Blocks blocks;
-  for (int d = low; d <= high; ++d)
-    for (const CellBlock& block : mesh.blocks)
-      if (dimension(block.type) == d && block.size() > 0) blocks.push_back(&block);
-  return blocks;
-}
-
-std::size_t num_cells(const Blocks& blocks) {
-  std::size_t n = 0;
-  for (const CellBlock* block : blocks) n += block->size();
-  return n;
-}
 
 /// Points first seen in the face stream of a polyhedron, in its order: VTK wants them in `connectivity`.
 std::vector<std::uint32_t> points_of_polyhedron(std::span<const VertexId> stream) {
@@ -44,11 +25,6 @@ std::vector<std::uint32_t> points_of_polyhedron(std::span<const VertexId> stream
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
-}
-
-std::span<const std::uint32_t> raw_ids(const std::vector<VertexId>& vertices) {
-  static_assert(sizeof(VertexId) == sizeof(std::uint32_t));
-  return {reinterpret_cast<const std::uint32_t*>(vertices.data()), vertices.size()};
 }
 
 /// connectivity and offsets of these blocks; polyhedra are gathered in `scratch`.
@@ -97,55 +73,16 @@ void write_types_and_faces(VtkOutput& vtk, const Blocks& blocks) {
 }
 
 void write_names(VtkOutput& vtk, const Mesh& mesh, const char* format, std::vector<std::string>& notes) {
-  const std::vector<std::string> names = fit_names(mesh, NameRule::line, format, notes);
-  const std::vector<std::int32_t> number = number_groups_by_dimension(mesh);
+  const std::vector<VtkName> names = group_names(mesh, NameRule::line, format, notes);
   if (names.empty()) return;
   vtk.open("FieldData");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const Group& group = mesh.groups[GroupId(i)];
+  for (const VtkName& name : names)
     vtk.line(
-        fmt::format("<DataArray type=\"Int32\" Name=\"{}:{}\" NumberOfComponents=\"1\" NumberOfTuples=\"2\""
+        fmt::format("<DataArray type=\"Int32\" Name=\"{}\" NumberOfComponents=\"1\" NumberOfTuples=\"2\""
                     "{}{} format=\"ascii\">{} {}</DataArray>",
-                    role_name(mesh, group.dimension), escape_xml(names[i]),
-                    group.kind.empty() ? "" : fmt::format(" kind=\"{}\"", escape_xml(group.kind)),
-                    group.two_sided ? " two_sided=\"1\"" : "", number[i], group.dimension));
-  }
+                    escape_xml(name.label), name.kind.empty() ? "" : fmt::format(" kind=\"{}\"", escape_xml(name.kind)),
+                    name.two_sided ? " two_sided=\"1\"" : "", name.id, name.dimension));
   vtk.close("FieldData");
-}
-
-void write_ids(VtkOutput& vtk, const Mesh& mesh, const Blocks& blocks) {
-  const std::vector<std::int32_t> number = number_groups_by_dimension(mesh);
-  for (int d = mesh.dimension; d >= 0; --d) {
-    bool is_needed = d >= mesh.dimension - 1;
-    for (const Group& group : mesh.groups) is_needed |= group.dimension == d;
-    if (!is_needed) continue;
-    std::vector<std::int32_t> ids;
-    ids.reserve(num_cells(blocks));
-    for (const CellBlock* block : blocks)
-      for (std::size_t cell = 0; cell < block->size(); ++cell) {
-        const std::int64_t group = dimension(block->type) == d ? group_of(*block, cell) : -1;
-        ids.push_back(group < 0 ? -1 : number[static_cast<std::size_t>(group)]);
-      }
-    vtk.own(vtk_id_array(mesh, d), 1, ids);
-  }
-}
-
-/// Fields on cells over all blocks written; NaN for those that lack it.
-void write_cell_fields(VtkOutput& vtk, const Mesh& mesh, const Blocks& blocks) {
-  std::map<std::string, int> components;
-  for (const Field& field : mesh.fields)
-    if (field.on == Field::On::cells) components.emplace(field.name, field.components);
-  for (const auto& [name, n] : components) {
-    std::vector<double> values;
-    for (const CellBlock* block : blocks) {
-      const std::size_t wanted = values.size() + block->size() * static_cast<std::size_t>(n);
-      for (const Field& field : mesh.fields)
-        if (field.on == Field::On::cells && field.block == block->type && field.name == name && field.components == n)
-          values.insert(values.end(), field.values.begin(), field.values.end());
-      values.resize(wanted, std::numeric_limits<double>::quiet_NaN());
-    }
-    vtk.own(name, n, values);
-  }
 }
 
 void write_data(VtkOutput& vtk, const Mesh& mesh, const Blocks& blocks) {
@@ -155,23 +92,16 @@ void write_data(VtkOutput& vtk, const Mesh& mesh, const Blocks& blocks) {
       vtk.array(field.name, field.components, std::vector{std::span<const double>(field.values)});
   vtk.close("PointData");
   vtk.open("CellData");
-  write_ids(vtk, mesh, blocks);
-  write_cell_fields(vtk, mesh, blocks);
+  for (const IdArray& ids : id_arrays(mesh, blocks)) vtk.own(ids.name, 1, ids.values);
+  for (const auto& [name, components] : cell_field_names(mesh))
+    vtk.own(name, components, cell_field(mesh, blocks, name, components));
   vtk.close("CellData");
 }
 
 void write_points(VtkOutput& vtk, const Mesh& mesh) {
-  static_assert(sizeof(Point) == 3 * sizeof(double));
   vtk.open("Points");
-  vtk.array("Points", 3,
-            std::vector{
-                std::span<const double>(reinterpret_cast<const double*>(mesh.points.data()), 3 * mesh.points.size())});
+  vtk.array("Points", 3, std::vector{raw_coordinates(mesh)});
   vtk.close("Points");
-}
-
-void check_size(const Mesh& mesh, const char* format) {
-  if (mesh.points.size() > std::size_t(std::numeric_limits<std::int32_t>::max()))
-    throw InputError(fmt::format("{}: more than 2^31 - 1 points are not supported", format));
 }
 
 }  // namespace

@@ -41,11 +41,6 @@ constexpr KindRow kKinds[] = {{BCWall, "wall"},
 
 }  // namespace
 
-std::mutex& cgns_turn() {
-  static std::mutex turn;
-  return turn;
-}
-
 CgnsFile::CgnsFile(const std::string& path, int mode, std::string shown_path)
     : is_writing_(mode == CG_MODE_WRITE), shown_path_(std::move(shown_path)) {
   if (is_writing_) cg_set_file_type(CG_FILE_HDF5);

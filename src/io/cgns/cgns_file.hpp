@@ -2,18 +2,16 @@
 #pragma once
 #include <cgnslib.h>
 
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "delfront/mesh.hpp"
+#include "io/hdf5/hdf5_handle.hpp"
 
 namespace delfront {
 
-/// @brief The turn of those who use the CGNS library, which keeps the place it is at in one variable.
-std::mutex& cgns_turn();
-
-/// @brief An open CGNS file; closed at the end whatever happens.
+/// @brief An open CGNS file; closed at the end whatever happens. The library keeps the place it is at in one variable:
+/// hold a Hdf5Turn as long as one of these is there.
 class CgnsFile {
  public:
   /// @throws InputError (reading), IoError (writing)  with the library's reason

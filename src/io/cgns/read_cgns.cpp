@@ -388,7 +388,7 @@ Mesh read_cgns(const std::string& path, Context& context) {
   const std::uint64_t size = std::filesystem::file_size(path, error);
   if (error) throw InputError(fmt::format("cannot read {}: {}", path, error.message()));
   if (size == 0) throw InputError(fmt::format("{}: the file is empty; export it again", path));
-  const std::lock_guard<std::mutex> turn(cgns_turn());
+  const Hdf5Turn turn;
   CgnsFile file(path, CG_MODE_READ, path);
   return CgnsReader(file, path, size, context).read();
 }
