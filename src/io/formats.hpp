@@ -72,7 +72,10 @@ Mesh read_cgns(const std::string& path, Context& context);
 void write_cgns(const Mesh& mesh, const std::string& path, const std::string& shown_path, const WriteOptions& options,
                 Context& context, std::vector<std::string>& notes);
 
-/// @brief Formats in HDF5, where it was there when this was built; by name too.
+/// @brief Formats in HDF5, where it was there when this was built; all but XDMF's XML by name too.
+Mesh read_xdmf(std::string_view bytes, const std::string& path, Context& context);
+void write_xdmf(const Mesh& mesh, const std::string& path, const std::string& shown_path, const WriteOptions& options,
+                Context& context, std::vector<std::string>& notes);
 Mesh read_vtkhdf(const std::string& path, Context& context);
 void write_vtkhdf(const Mesh& mesh, const std::string& path, const std::string& shown_path, const WriteOptions& options,
                   Context& context, std::vector<std::string>& notes);

@@ -61,6 +61,7 @@ const std::vector<Format>& table() {
       {"vtp", "VTK XML surface", {".vtp"}, read_vtp, write_vtp},
 #ifdef DELFRONT_HAS_HDF5
       {"vtkhdf", "VTKHDF unstructured grid", {".vtkhdf", ".hdf"}, nullptr, nullptr, {}, read_vtkhdf, write_vtkhdf},
+      {"xdmf", "XDMF, arrays in .h5", {".xdmf", ".xmf"}, read_xdmf, nullptr, {}, nullptr, write_xdmf},
 #endif
       {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_any_msh, write_msh},
       {"pos", "Gmsh parsed views (ASCII)", {".pos"}, read_pos, nullptr},
@@ -97,6 +98,7 @@ const std::vector<LeftOut>& left_out_formats() {
   static const std::vector<LeftOut> kLeftOut = {
 #ifndef DELFRONT_HAS_HDF5
       {"vtkhdf", {".vtkhdf", ".hdf"}, "HDF5 (Debian: libhdf5-dev)"},
+      {"xdmf", {".xdmf", ".xmf"}, "HDF5 (Debian: libhdf5-dev)"},
 #endif
 #ifndef DELFRONT_HAS_CGNS
       {"cgns", {".cgns"}, "the CGNS library (Debian: libcgns-dev)"},

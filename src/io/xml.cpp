@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 constexpr std::string_view kAppended = "AppendedData";
+constexpr std::string_view kCdata = "<![CDATA[", kCdataEnd = "]]>";
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 bool ends_name(char c) { return is_space(c) || c == '=' || c == '>' || c == '/' || c == '<'; }
@@ -74,7 +75,7 @@ class XmlParser {
 
   XmlElement parse() {
     skip_to_element();
-    if (at_ >= bytes_.size()) fail("no XML element: this is not a VTK XML file");
+    if (at_ >= bytes_.size()) fail("no XML element: this is no XML file");
     XmlElement root;
     parse_element(root, 0);
     return root;
@@ -98,6 +99,8 @@ class XmlParser {
     while (at_ < bytes_.size()) {
       if (looking_at("<!--")) {
         skip_past("-->");
+      } else if (looking_at(kCdata)) {
+        skip_past(kCdataEnd);
       } else if (looking_at("<?") || looking_at("<!")) {
         skip_past(">");
       } else if (bytes_[at_] == '<') {
@@ -150,6 +153,7 @@ class XmlParser {
     if (element.name == kAppended) return take_appended(element);
     const std::size_t text_begin = at_;
     element.text = bytes_.substr(at_, std::min(bytes_.find('<', at_), bytes_.size()) - text_begin);
+    if (bytes_.substr(at_ + element.text.size()).starts_with(kCdata)) take_cdata(element);
     for (;;) {
       skip_to_element();
       if (at_ >= bytes_.size())
@@ -162,6 +166,15 @@ class XmlParser {
     at_ += 2;
     if (name() != element.name) fail(fmt::format("</{}> is missing", element.name.substr(0, 40)));
     skip_past(">");
+  }
+
+  /// Text as it stands, where nothing else stands before it.
+  void take_cdata(XmlElement& element) {
+    if (!std::all_of(element.text.begin(), element.text.end(), is_space)) return;
+    at_ += element.text.size() + kCdata.size();
+    const std::size_t begin = at_;
+    skip_past(kCdataEnd);
+    element.text = bytes_.substr(begin, at_ - kCdataEnd.size() - begin);
   }
 
   void take_appended(XmlElement& element) {

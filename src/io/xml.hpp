@@ -7,12 +7,13 @@
 
 namespace delfront {
 
-/// @brief An element of the small part of XML that VTK files use: attributes, children, text. Views into the bytes.
+/// @brief An element of the small part of XML that VTK and XDMF files use: attributes, children, text. Views into the
+/// bytes.
 struct XmlElement {
   std::string_view name;
   std::vector<std::pair<std::string_view, std::string>> attributes;  ///< values with entities resolved
   std::vector<XmlElement> children;
-  std::string_view text;  ///< between the tags, up to the first child
+  std::string_view text;  ///< between the tags, up to the first child; or what a CDATA section there holds
 
   /// @return the attribute's value, or nullptr
   const std::string* find(std::string_view attribute) const;
