@@ -40,6 +40,8 @@ Mesh read_nastran(std::string_view bytes, const std::string& path, Context& cont
 Mesh read_abaqus(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_fluent(std::string_view bytes, const std::string& path, Context& context);
 Mesh read_ugrid(std::string_view bytes, const std::string& path, Context& context);
+/// @brief Files that are netCDF-4 are opened a second time, by `path`.
+Mesh read_exodus(std::string_view bytes, const std::string& path, Context& context);
 
 /// @brief FUN3D's .mapbc beside a UGRID: names and kinds of its surfaces, names of its volumes.
 void read_mapbc(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context);
@@ -65,6 +67,7 @@ void write_fluent(const Mesh&, Output&, const WriteOptions&, Context&, std::vect
 void write_ugrid(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_ugrid_b8(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_ugrid_lb8(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_exodus(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 
 /// @brief CGNS, where its library was there when this was built. Its files are read and written by name.
 Mesh read_cgns(const std::string& path, Context& context);

@@ -71,6 +71,7 @@ const std::vector<Format>& table() {
 #ifdef DELFRONT_HAS_CGNS
       {"cgns", "CGNS", {".cgns"}, nullptr, nullptr, {}, read_cgns, write_cgns},
 #endif
+      {"exodus", "Exodus II (netCDF)", {".e", ".exo", ".ex2", ".g"}, read_exodus, write_exodus},
       {"ugrid", "AFLR UGRID (ASCII), names in .mapbc", {".ugrid"}, read_ugrid, write_ugrid, kMapbc},
       {"ugrid-b8", "UGRID (binary, big endian)", {".b8.ugrid"}, read_ugrid, write_ugrid_b8, kMapbc},
       {"ugrid-lb8", "UGRID (binary, little endian)", {".lb8.ugrid"}, read_ugrid, write_ugrid_lb8, kMapbc},

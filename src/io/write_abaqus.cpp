@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "delfront/errors.hpp"
 #include "io/abaqus.hpp"
 #include "io/cells.hpp"
+#include "io/face_owners.hpp"
 #include "io/formats.hpp"
 #include "io/grid_parts.hpp"
 #include "io/names.hpp"
@@ -20,17 +20,15 @@ namespace {
 
 constexpr std::size_t kItemsOfLine = 16;
 
-/// The face of a cell that stands for a stored face.
-struct CellFace {
-  std::int64_t element = 0;  // from 1; 0: none yet
-  int face = 0;
-  bool is_same_turn = false;
-};
-
 class AbaqusWriter {
  public:
   AbaqusWriter(const Mesh& mesh, Output& out, Context& context, std::vector<std::string>& notes)
-      : mesh_(mesh), out_(out), context_(context), notes_(notes), top_(mesh.top_dimension()) {
+      : mesh_(mesh),
+        out_(out),
+        context_(context),
+        notes_(notes),
+        top_(mesh.top_dimension()),
+        owners_(mesh, false) {  // the manual's faces look inwards
     names_ = fit_names(mesh, NameRule::foam_word, "Abaqus", notes, {mesh.dimension - 1, mesh.dimension});
   }
 
@@ -128,56 +126,33 @@ class AbaqusWriter {
     });
   }
 
-  /// For each stored face a cell that has it: best the one that it points out of.
   void find_faces() {
-    std::unordered_map<FacetKey, std::pair<const CellBlock*, std::size_t>, FacetKeyHash> stored;
-    for (const CellBlock& block : mesh_.blocks)
-      for (std::size_t cell = 0; dimension(block.type) == top_ - 1 && top_ == mesh_.dimension && cell < block.size();
-           ++cell)
-        stored.emplace(facet_key(block[cell]), std::pair(&block, cell));
-    if (stored.empty()) return;
-    std::vector<VertexId> corners;
+    if (owners_.is_empty()) return;
     for_each_block(top_, [&](const CellBlock& block, std::int64_t first) {
-      const auto faces = abaqus_faces(block.type);
       for (std::size_t cell = 0; cell < block.size(); ++cell)
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-          corners.clear();
-          for (const int k : faces[f])
-            if (k >= 0) corners.push_back(block[cell][static_cast<std::size_t>(k)]);
-          const FacetKey key = facet_key(corners);
-          const auto found = stored.find(key);
-          if (found == stored.end()) continue;
-          const std::span<const VertexId> face = (*found->second.first)[found->second.second];
-          const auto at =
-              static_cast<std::size_t>(std::find(corners.begin(), corners.end(), face[0]) - corners.begin());
-          const bool runs_along = corners[(at + 1) % corners.size()] == face[1] && (face.size() > 2 || at == 0);
-          const bool is_same_turn = face.size() == 2 ? runs_along : !runs_along;  // the manual's faces look inwards
-          CellFace& best = face_of_[key];
-          if (best.element == 0 || (is_same_turn && !best.is_same_turn))
-            best = {first + static_cast<std::int64_t>(cell), static_cast<int>(f) + 1, is_same_turn};
-        }
+        owners_.offer(first + static_cast<std::int64_t>(cell), block[cell], abaqus_faces(block.type));
     });
   }
 
   void write_surface(std::int64_t wanted, const std::string& name) {
-    std::vector<CellFace> faces;
+    std::vector<FaceOwners::Owner> faces;
     std::vector<std::int64_t> nodes;
     for (const CellBlock& block : mesh_.blocks)
       for (std::size_t cell = 0; dimension(block.type) == top_ - 1 && cell < block.size(); ++cell) {
         if (group_of(block, cell) != wanted) continue;
-        const auto found = face_of_.find(facet_key(block[cell]));
-        if (found == face_of_.end()) {
+        const FaceOwners::Owner* owner = owners_.find(block[cell]);
+        if (!owner) {
           ++num_loose_;
           continue;
         }
-        faces.push_back(found->second);
+        faces.push_back(*owner);
         for (const VertexId v : block[cell]) nodes.push_back(static_cast<std::int64_t>(v.index()) + 1);
       }
     if (faces.empty() && (wanted < 0 || top_ != mesh_.dimension)) return;
     if (wanted < 0)
       notes_.push_back(fmt::format("Abaqus: {} faces without a patch are in the surface {}", faces.size(), name));
     out_.text(fmt::format("*SURFACE, NAME={}, TYPE=ELEMENT\n", name));
-    for (const CellFace& face : faces) out_.text(fmt::format("{}, S{}\n", face.element, face.face));
+    for (const FaceOwners::Owner& face : faces) out_.text(fmt::format("{}, S{}\n", face.element, face.face));
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     if (nodes.empty()) return;
@@ -194,7 +169,7 @@ class AbaqusWriter {
   std::vector<std::string>& notes_;
   int top_;
   std::vector<std::string> names_;
-  std::unordered_map<FacetKey, CellFace, FacetKeyHash> face_of_;
+  FaceOwners owners_;
   std::size_t num_loose_ = 0;
 };
 

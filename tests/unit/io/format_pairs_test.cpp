@@ -42,6 +42,7 @@ std::vector<FormatCase> all_formats() {
                                  {.file = "a.ugrid", .plane = false, .kinds = kSolverKinds, .loose_names = false},
                                  {.file = "a.b8.ugrid", .plane = false, .kinds = kSolverKinds, .loose_names = false},
                                  {.file = "a.lb8.ugrid", .plane = false, .kinds = kSolverKinds, .loose_names = false}};
+  all.push_back({.file = "a.exo", .kinds = kAllKinds});
   for (const char* name : {"cgns", "vtkhdf", "xdmf"})  // where their libraries are
     if (std::any_of(formats().begin(), formats().end(), [&](const FormatInfo& f) { return f.name == name; }))
       all.push_back({.file = std::string("a.") + name, .kinds = kAllKinds});
