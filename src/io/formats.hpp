@@ -67,6 +67,8 @@ void write_fluent(const Mesh&, Output&, const WriteOptions&, Context&, std::vect
 void write_ugrid(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_ugrid_b8(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_ugrid_lb8(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_sol(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
+void write_solb(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 void write_exodus(const Mesh&, Output&, const WriteOptions&, Context&, std::vector<std::string>& notes);
 
 /// @brief CGNS, where its library was there when this was built. Its files are read and written by name.

@@ -67,6 +67,8 @@ const std::vector<Format>& table() {
       {"pos", "Gmsh parsed views (ASCII)", {".pos"}, read_pos, nullptr},
       {"medit", "Medit, MMG", {".mesh"}, read_medit, write_medit},
       {"meshb", "Medit, libMeshb (binary)", {".meshb"}, read_meshb, write_meshb},
+      {"sol", "Medit solution: fields on points", {".sol"}, nullptr, write_sol},
+      {"solb", "Medit solution (binary)", {".solb"}, nullptr, write_solb},
       {"su2", "SU2", {".su2"}, read_su2, write_su2},
 #ifdef DELFRONT_HAS_CGNS
       {"cgns", "CGNS", {".cgns"}, nullptr, nullptr, {}, read_cgns, write_cgns},
@@ -102,7 +104,7 @@ const std::vector<LeftOut>& left_out_formats() {
       {"xdmf", {".xdmf", ".xmf"}, "HDF5 (Debian: libhdf5-dev)"},
 #endif
 #ifndef DELFRONT_HAS_CGNS
-      {"cgns", {".cgns"}, "the CGNS library (Debian: libcgns-dev)"},
+      {"cgns", {".cgns"}, "CGNS library (Debian: libcgns-dev)"},
 #endif
   };
   return kLeftOut;

@@ -10,44 +10,13 @@
 #include "io/cells.hpp"
 #include "io/formats.hpp"
 #include "io/gmf.hpp"
+#include "io/gmf_output.hpp"
 #include "io/grid_parts.hpp"
 #include "io/names.hpp"
-#include "io/output.hpp"
 
 namespace delfront {
 
 namespace {
-
-class GmfWriter {
- public:
-  GmfWriter(Output& out, int version) : out_(out), version_(version) {
-    integer(1);
-    integer(version);
-    at_ = 8;
-  }
-
-  /// @param bytes  behind the head: what the keyword holds
-  void begin(std::int32_t keyword, std::uint64_t bytes) {
-    const std::uint64_t head = version_ < 3 ? 8 : 12;
-    at_ += head + bytes;
-    integer(keyword);
-    if (version_ < 3)
-      integer(static_cast<std::int64_t>(at_));
-    else
-      out_.binary(at_);
-  }
-  void integer(std::int64_t value) { out_.binary(static_cast<std::int32_t>(value)); }
-  void real(double value) { out_.binary(value); }
-  void end() {
-    integer(gmf::kEnd);
-    version_ < 3 ? integer(0) : out_.binary(std::uint64_t{0});
-  }
-
- private:
-  Output& out_;
-  int version_;
-  std::uint64_t at_ = 0;
-};
 
 std::uint64_t bytes_of(const Mesh& mesh) {
   std::uint64_t bytes = 1000 + mesh.points.size() * static_cast<std::uint64_t>(8 * mesh.dimension + 4);

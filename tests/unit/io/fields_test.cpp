@@ -254,5 +254,36 @@ TEST(NodeFields, medit_plane_metric) {
   EXPECT_EQ(field_of(got, "sol").values, (std::vector<double>{1, 2, 3, 1, 2, 3, 1, 2, 3}));
 }
 
+TEST(NodeFields, medit_solutions_come_back_beside_their_mesh) {
+  const std::filesystem::path folder = scratch_folder("io_sol");
+  for (const int dimension : {2, 3})
+    for (const auto& [grid, solution] : {std::pair("a.mesh", "a.sol"), std::pair("b.meshb", "b.solb")}) {
+      Mesh mesh = dimension == 3 ? two_boxes() : plane_grid();
+      const int tensor = dimension * (dimension + 1) / 2;
+      for (const int components : {1, dimension, tensor, 7}) {
+        Field field{fmt::format("f{}", components), Field::On::vertices, CellType::vertex, components, {}};
+        for (std::size_t i = 0; i < mesh.points.size() * std::size_t(components); ++i)
+          field.values.push_back(1 / (double(i) + 3));
+        mesh.fields.push_back(std::move(field));
+      }
+      Recorder recorder;
+      write_mesh(mesh, (folder / grid).string(), recorder.context);
+      const std::vector<std::string> notes = write_mesh(mesh, (folder / solution).string(), recorder.context);
+      ASSERT_EQ(notes.size(), 2u);
+      expect_mentions(notes[0],
+                      {"f1 (scalar)", fmt::format("f{} (vector)", dimension), fmt::format("f{} (tensor)", tensor)});
+      expect_mentions(notes[1], {"1 field(s)", "left out"});
+      const Mesh got = read_mesh((folder / grid).string(), recorder.context);
+      ASSERT_EQ(got.fields.size(), 3u);
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(got.fields[i].components, mesh.fields[i].components);
+        EXPECT_EQ(got.fields[i].values, mesh.fields[i].values);
+      }
+    }
+  Context context;
+  EXPECT_THROW(write_mesh(two_boxes(), (folder / "c.sol").string(), context), InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "c.sol"));
+}
+
 }  // namespace
 }  // namespace delfront
