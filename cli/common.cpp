@@ -36,7 +36,7 @@ void Command::prepare(Context& context, Terminal& terminal) const {
   context.threads = common_.threads > 0 ? common_.threads : all;
   context.cancel = stop_on_interrupt();
   terminal.attach(context);
-  watch_cad_reading(context);
+  watch_reading(context);
 }
 
 std::string format_list() {

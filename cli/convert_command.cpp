@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
+#include "guard.hpp"
 #include "pipeline/convert_job.hpp"
 #include "pipeline/facts_text.hpp"
 
@@ -30,7 +31,7 @@ class ConvertCommand : public Command {
     app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
     app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");
     app->add_flag("--ascii", is_ascii_, "write text instead of binary, where the format has both");
-    app->add_flag("--compress", is_compressed_, "VTU and VTP: compressed");
+    app->add_flag("--compress", is_compressed_, "VTU, VTP, VTKHDF, XDMF: compressed");
     app->add_option("--msh-version", msh_version_, "version of MSH files; by default 4.1")->type_name("V");
     app->add_option("--solver", solver_,
                     "starter files for this solver beside OUT, naming every boundary; files that exist are kept")
@@ -40,6 +41,8 @@ class ConvertCommand : public Command {
 
   int run(const std::string&) override {
     Terminal terminal = make_terminal();
+    if (needs_guard(in_, from_))
+      if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);
     const WriteOptions how{.binary = !is_ascii_, .version = msh_version_, .compress = is_compressed_};

@@ -19,8 +19,10 @@
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <span>
 
 #include "delfront/cad.hpp"
+#include "delfront/io.hpp"
 #include "interrupt.hpp"
 
 namespace delfront::cli {
@@ -29,14 +31,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kLook = 200;         ///< milliseconds between two looks at the child
-constexpr double kPatience = 5.0;  ///< seconds that OpenCASCADE gets to stop by itself
+constexpr double kPatience = 5.0;  ///< seconds that a library gets to stop by itself
 
 /// Lies in memory that both processes see.
 struct Shared {
   std::atomic<bool> is_interrupted{false};
-  std::atomic<bool> is_reading{false};  ///< OpenCASCADE is at work; the path below is whole
+  std::atomic<bool> is_reading{false};  ///< a library is at work; the path below is whole
   std::atomic<double> time_limit{0};    ///< seconds, 0: none
   std::array<char, 4096> path{};
+  std::array<char, 32> library{};  ///< which is at work
 };
 static_assert(std::atomic<double>::is_always_lock_free);
 
@@ -59,6 +62,7 @@ bool is_crash(int signal) {
 
 /// What the program that wrote the file may be asked for instead.
 std::string other_formats(const std::string& path) {
+  if (!is_cad_file(path)) return "VTU";
   std::string suffix = std::filesystem::path(path).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   if (suffix == ".step" || suffix == ".stp") return "another kind of STEP (AP203, AP214, AP242), or as IGES";
@@ -110,6 +114,9 @@ class Parent {
   }
 
   std::string path() const { return {shared_.path.data(), strnlen(shared_.path.data(), shared_.path.size())}; }
+  std::string library() const {
+    return {shared_.library.data(), strnlen(shared_.library.data(), shared_.library.size())};
+  }
 
   int fail(ExitCode code, const std::string& message) {
     terminal_.error(code, message, {});
@@ -127,11 +134,10 @@ class Parent {
                       "export it again, or allow more time (--time-limit)",
                       shared_.time_limit.load(), path()));
     if (shared_.is_reading && is_crash(signal))
-      return fail(
-          ExitCode::bad_input,
-          fmt::format("OpenCASCADE crashed while reading {} ({}); the file is damaged, or holds what "
-                      "OpenCASCADE cannot take; export it again, or as {}, or part by part; nothing was written",
-                      path(), strsignal(signal), other_formats(path())));
+      return fail(ExitCode::bad_input,
+                  fmt::format("{0} crashed while reading {1} ({2}); the file is damaged, or holds what "
+                              "{0} cannot take; export it again, or as {3}, or part by part; nothing was written",
+                              library(), path(), strsignal(signal), other_formats(path())));
     if (shared_.is_reading && signal == SIGKILL)
       return fail(ExitCode::limit_reached,
                   fmt::format("killed while reading {}, probably for the memory that took; the file may be damaged; "
@@ -194,13 +200,25 @@ pid_t divide(const std::array<int, 2>& pipe, Shared* shared) {
   return child;
 }
 
-void note_path(const std::string& path, double time_limit, Shared& shared) {
-  const std::size_t length = std::min(path.size(), shared.path.size() - 1);
-  std::copy_n(path.begin(), length, shared.path.begin());
-  shared.path[length] = '\0';
+void copy_text(const std::string& text, std::span<char> to) {
+  const std::size_t length = std::min(text.size(), to.size() - 1);
+  std::copy_n(text.begin(), length, to.begin());
+  to[length] = '\0';
+}
+
+void note_reading(const char* library, const std::string& path, double time_limit, Shared& shared) {
+  copy_text(path, shared.path);
+  copy_text(library, shared.library);
   shared.time_limit = time_limit;
   shared.is_reading = true;
 }
+
+/// What the log says where a library begins and ends, and what a user is told of it.
+struct LibraryWords {
+  const char *begins, *ends, *name;
+};
+constexpr LibraryWords kLibraries[] = {{kCadReadingBegins, kCadReadingEnds, "OpenCASCADE"},
+                                       {kLibraryReadingBegins, kLibraryReadingEnds, "HDF5"}};
 
 }  // namespace
 
@@ -219,13 +237,20 @@ std::optional<int> go_on_in_child(Terminal& terminal) {
   return Parent(child, ends[0], *shared, terminal).run();
 }
 
-void watch_cad_reading(Context& context) {
+bool needs_guard(const std::string& path, const std::string& format) {
+  return is_cad_file(path) || is_read_by_library(path, format);
+}
+
+void watch_reading(Context& context) {
   Shared* const shared = shared_with_parent();
   if (!shared) return;
   context.on_log = [shared, &context, hear = context.on_log](LogLevel level, const std::string& message) {
-    if (level == LogLevel::debug && message.starts_with(kCadReadingBegins))
-      note_path(message.substr(std::strlen(kCadReadingBegins)), context.time_limit, *shared);
-    if (level == LogLevel::debug && message.starts_with(kCadReadingEnds)) shared->is_reading = false;
+    for (const LibraryWords& words : kLibraries) {
+      if (level != LogLevel::debug) break;
+      if (message.starts_with(words.begins))
+        note_reading(words.name, message.substr(std::strlen(words.begins)), context.time_limit, *shared);
+      if (message.starts_with(words.ends)) shared->is_reading = false;
+    }
     if (hear) hear(level, message);
   };
 }

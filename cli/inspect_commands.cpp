@@ -53,7 +53,7 @@ class CheckCommand : public Command {
 
   int run(const std::string&) override {
     Terminal terminal = make_terminal();
-    if (is_cad_file(file_))
+    if (needs_guard(file_, format_))
       if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);
@@ -108,7 +108,7 @@ class InfoCommand : public Command {
 
   int run(const std::string&) override {
     Terminal terminal = make_terminal();
-    if (is_cad_file(file_))
+    if (needs_guard(file_, format_))
       if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);

@@ -100,7 +100,8 @@ class JobCommand : public Command {
     }
     Terminal terminal = make_terminal();
     const auto& files = options.input.files;
-    if (std::any_of(files.begin(), files.end(), is_cad_file))
+    if (std::any_of(files.begin(), files.end(), [](const auto& file) { return needs_guard(file); }) ||
+        needs_guard(options.size.background.file))
       if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);

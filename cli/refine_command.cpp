@@ -17,6 +17,7 @@
 #include "delfront/io.hpp"
 #include "delfront/refine_grid.hpp"
 #include "delfront/version.hpp"
+#include "guard.hpp"
 #include "pipeline/facts_text.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/refine_job.hpp"
@@ -68,7 +69,7 @@ class RefineCommand : public Command {
     app->add_option("--from", from_, "type of IN, instead of by extension")->type_name("FORMAT");
     app->add_option("--format", to_, "type of OUT, instead of by extension")->type_name("FORMAT");
     app->add_flag("--ascii", is_ascii_, "write text instead of binary, where the format has both");
-    app->add_flag("--compress", is_compressed_, "VTU: compressed");
+    app->add_flag("--compress", is_compressed_, "VTU, VTKHDF, XDMF: compressed");
     for (const OptionRow& row : option_table())
       if (std::find(kLimits.begin(), kLimits.end(), row.key) != kLimits.end())
         app->add_option(row.flags, limits_[row.key], row.help)->type_name(row.metavar)->group("Limits");
@@ -78,6 +79,8 @@ class RefineCommand : public Command {
   int run(const std::string& command_line) override {
     check_report();
     Terminal terminal = make_terminal();
+    if (needs_guard(in_, from_) || needs_guard(geometry_))
+      if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     Facts facts;
     facts.command = command_line;

@@ -69,7 +69,7 @@ class ViewCommand : public Command {
     Terminal terminal = make_terminal();
     page_or_throw();
     check_arguments();
-    if (is_cad_file(file_))
+    if (needs_guard(file_, format_))
       if (const std::optional<int> ended = go_on_in_child(terminal)) return *ended;
     Context context;
     prepare(context, terminal);

@@ -12,7 +12,7 @@ namespace delfront {
 struct WriteOptions {
   bool binary = true;     ///< where the format has both
   std::string version;    ///< MSH: "2.2" or "4.1" (default 4.1)
-  bool compress = false;  ///< VTK XML: zlib
+  bool compress = false;  ///< VTK XML, VTKHDF, XDMF: zlib
 };
 
 /// @brief A file format: what it is called, how it is recognised, what it can do.
@@ -38,6 +38,14 @@ const FormatInfo& format_of(const std::string& path, const std::string& format =
 /// order xx yy zz xy yz xz, in the plane xx xy yy.
 /// @throws InputError  missing, empty, truncated, malformed (what, where: line or byte, what to try)
 Mesh read_mesh(const std::string& path, Context& context, const std::string& format = "");
+
+/// @brief True where read_mesh hands the file to a library that its bytes may crash when it is damaged (HDF5, CGNS).
+bool is_read_by_library(const std::string& path, const std::string& format = "");
+
+/// @brief What Context::on_log hears (debug, each followed by the path) before and after such a library is at work:
+/// whoever guards against a crash knows by these what it was at.
+inline constexpr const char* kLibraryReadingBegins = "HDF5 reads ";
+inline constexpr const char* kLibraryReadingEnds = "HDF5 has read ";
 
 /// @brief Write a file under a temporary name beside it, then rename it; a name ending in '/' is an OpenFOAM case.
 /// @return names that the format could not hold and how they were changed, as sentences

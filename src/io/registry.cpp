@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "base/nearest_name.hpp"
@@ -194,6 +195,21 @@ const std::vector<FormatInfo>& formats() {
 const FormatInfo& format_of(const std::string& path, const std::string& format, bool to_write) {
   const Format& found = find_format(path, format, to_write);
   return formats()[static_cast<std::size_t>(&found - table().data())];
+}
+
+bool is_read_by_library(const std::string& path, const std::string& format) {
+  constexpr std::string_view kHdf5 = "\x89HDF";
+  std::string_view name;
+  try {
+    name = find_format(path, format, false).name;
+  } catch (const UsageError&) {  // whoever reads it will say so
+    return false;
+  }
+  if (name == "cgns" || name == "vtkhdf" || name == "xdmf") return true;
+  if (name != "exodus") return false;
+  char first[4] = {};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(first, sizeof(first)) && std::string_view(first, sizeof(first)) == kHdf5;
 }
 
 namespace {

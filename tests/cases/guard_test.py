@@ -121,5 +121,20 @@ class Guard(case.Case):
             process.kill()
 
 
+class LibraryGuard(case.Case):
+    def test_a_crash_of_hdf5_is_bad_input_with_the_name_of_the_file(self):
+        library = os.environ.get("DELFRONT_CRASHING_HDF5", "")
+        if not library:
+            self.skipTest("DELFRONT_CRASHING_HDF5 names no library")
+        env = dict(os.environ, LD_PRELOAD=library, ASAN_OPTIONS="verify_asan_link_order=0:handle_segv=0:detect_leaks=0")
+        self.write("grid.vtkhdf", "\x89HDF")
+        self.write("case.toml", '[input]\nfiles = ["grid.vtkhdf"]\n[output]\nfiles = ["out.vtu"]\n')
+        for command in (("info", "grid.vtkhdf"), ("check", "grid.vtkhdf"), ("convert", "grid.vtkhdf", "out.vtu"),
+                        ("refine", "grid.vtkhdf", "-o", "out.vtu"), ("mesh", "case.toml")):
+            before = self.files()
+            self.expect(3, *command, env=env, says=["HDF5 crashed while reading", "grid.vtkhdf", "Segmentation fault", "VTU"])
+            self.assertEqual(self.files(), before)
+
+
 if __name__ == "__main__":
     sys.exit(unittest.main())

@@ -16,6 +16,7 @@
 #include "io/cgns/cgns_file.hpp"
 #include "io/formats.hpp"
 #include "io/grid_parts.hpp"
+#include "io/hdf5/library_reading.hpp"
 
 namespace delfront {
 
@@ -389,6 +390,7 @@ Mesh read_cgns(const std::string& path, Context& context) {
   if (error) throw InputError(fmt::format("cannot read {}: {}", path, error.message()));
   if (size == 0) throw InputError(fmt::format("{}: the file is empty; export it again", path));
   const Hdf5Turn turn;
+  const LibraryReading reading(path, context);
   CgnsFile file(path, CG_MODE_READ, path);
   return CgnsReader(file, path, size, context).read();
 }

@@ -15,6 +15,7 @@
 #include "io/grid_parts.hpp"
 #ifdef DELFRONT_HAS_HDF5
 #include "io/hdf5/hdf5_handle.hpp"
+#include "io/hdf5/library_reading.hpp"
 #endif
 
 namespace delfront {
@@ -274,6 +275,7 @@ Mesh read_exodus(std::string_view bytes, const std::string& path, Context& conte
 #ifdef DELFRONT_HAS_HDF5
   if (bytes.starts_with("\x89HDF")) {
     const Hdf5Turn turn;
+    const LibraryReading reading(path, context);
     return ExodusReader(*open_netcdf4(path), path, context).read();
   }
   throw InputError(fmt::format("{}: this is no netCDF file, so it is no Exodus", path));

@@ -7,6 +7,7 @@
 #include "delfront/errors.hpp"
 #include "io/formats.hpp"
 #include "io/hdf5/hdf5_reader.hpp"
+#include "io/hdf5/library_reading.hpp"
 #include "io/vtk_grid.hpp"
 
 namespace delfront {
@@ -156,6 +157,7 @@ class VtkHdfReader {
 
 Mesh read_vtkhdf(const std::string& path, Context& context) {
   const Hdf5Turn turn;
+  const LibraryReading reading(path, context);
   return VtkHdfReader(path, context).read();
 }
 

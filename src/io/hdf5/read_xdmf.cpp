@@ -13,6 +13,7 @@
 #include "io/cursor.hpp"
 #include "io/formats.hpp"
 #include "io/hdf5/hdf5_reader.hpp"
+#include "io/hdf5/library_reading.hpp"
 #include "io/hdf5/xdmf.hpp"
 #include "io/vtk_grid.hpp"
 #include "io/xml.hpp"
@@ -314,6 +315,7 @@ class XdmfReader {
 
 Mesh read_xdmf(std::string_view bytes, const std::string& path, Context& context) {
   const Hdf5Turn turn;
+  const LibraryReading reading(path, context);
   return XdmfReader(bytes, path, context).read();
 }
 
