@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Files of other programs go in, and other programs take ours: meshio, Gmsh, cgnscheck, OpenFOAM.
+"""Files of other programs go in, and other programs take ours: meshio, VTK, netCDF, Gmsh, cgnscheck, OpenFOAM.
 
 usage: test_formats.py DELFRONT [unittest arguments]; what needs a program that is missing is skipped by name.
 """
@@ -19,6 +19,62 @@ try:
     import numpy as np
 except ImportError:
     meshio = None
+
+try:
+    import h5py
+    import netCDF4
+except ImportError:
+    netCDF4 = None
+
+# VTK's own opinion of a file, or a file of its own: an OPERATION, then paths; prints cells by type and their volume.
+VTK_SCRIPT = """
+import sys
+import vtk
+operation, source, *target = sys.argv[1:]
+reader = getattr(vtk, {"xdmf": "vtkXdmfReader", "vtkhdf": "vtkHDFReader", "e": "vtkExodusIIReader",
+                       "vtu": "vtkXMLUnstructuredGridReader"}[source.rsplit(".")[-1]], None)
+if not reader:
+    sys.exit(77)
+reader = reader()
+reader.SetFileName(source)
+if operation == "exodus":
+    reader.UpdateInformation()
+    for kind in (vtk.vtkExodusIIReader.ELEM_BLOCK, vtk.vtkExodusIIReader.SIDE_SET):
+        for i in range(reader.GetNumberOfObjects(kind)):
+            reader.SetObjectStatus(kind, i, 1)
+            print("object", reader.GetObjectName(kind, i), reader.GetNumberOfEntriesInObject(kind, i))
+reader.Update()
+data = reader.GetOutputDataObject(0)
+if operation == "write_vtkhdf":
+    if not hasattr(vtk, "vtkHDFWriter"):
+        sys.exit(77)
+    writer = vtk.vtkHDFWriter()
+    writer.SetFileName(target[0])
+    writer.SetCompressionLevel(int(target[1]))
+elif operation == "write_xdmf":
+    writer = vtk.vtkXdmfWriter()
+    writer.SetFileName(target[0])
+elif operation == "write_exodus":
+    writer = vtk.vtkExodusIIWriter()
+    writer.SetFileName(target[0])
+else:
+    writer = None
+if writer:
+    writer.SetInputData(data)
+    sys.exit(0 if writer.Write() else 1)
+while data.IsA("vtkMultiBlockDataSet"):  # the first of the blocks that hold something
+    data = next(data.GetBlock(i) for i in range(data.GetNumberOfBlocks())
+                if data.GetBlock(i) and data.GetBlock(i).GetNumberOfElements(0) + data.GetBlock(i).GetNumberOfElements(1) > 0)
+sizes = vtk.vtkCellSizeFilter()
+sizes.SetInputData(data)
+sizes.Update()
+volumes = sizes.GetOutput().GetCellData().GetArray("Volume")
+for i in range(data.GetNumberOfCells()):
+    print("cell", data.GetCellType(i), round(abs(volumes.GetValue(i)), 6))
+for attributes in (data.GetCellData(), data.GetFieldData()):
+    for i in range(attributes.GetNumberOfArrays()):
+        print("array", attributes.GetArrayName(i))
+"""
 
 GEO = """
 SetFactory("OpenCASCADE");
@@ -124,6 +180,111 @@ class Formats(unittest.TestCase):
         if status != 0 or not path.exists():
             self.skipTest(f"this gmsh writes no {extension}: {text[-200:]}")
         return path
+
+    def test_hdf5_and_netcdf_files_of_meshio_are_read(self):
+        if not netCDF4:
+            self.skipTest("h5py and netCDF4 are not installed (Debian python3-h5py, python3-netcdf4)")
+        if "xdmf" not in run(DELFRONT, "--help")[1]:
+            self.skipTest("built without HDF5")
+        for name, options in (("a.xdmf", {}), ("x.xdmf", {"data_format": "XML"}), ("a.e", {})):
+            with self.subTest(name):
+                meshio.write(self.folder / name, self.mixed(has_references=False), **options)
+                self.convert(self.folder / name, self.folder / "back.msh")
+                self.check_mixed(self.folder / "back.msh", name)
+
+    def test_meshio_reads_our_hdf5_and_netcdf(self):
+        if not netCDF4:
+            self.skipTest("h5py and netCDF4 are not installed (Debian python3-h5py, python3-netcdf4)")
+        meshio.write(self.folder / "a.mesh", self.mixed(), file_format="medit")
+        for name in ("b.xdmf", "b.e"):
+            with self.subTest(name):
+                if name == "b.xdmf" and "xdmf" not in run(DELFRONT, "--help")[1]:
+                    self.skipTest("built without HDF5")
+                self.convert(self.folder / "a.mesh", self.folder / name)
+                self.check_mixed(self.folder / name, name)
+        mesh = meshio.read(self.folder / "b.xdmf")
+        self.assertEqual(list(mesh.field_data["patch:patch_1"]), [0, 2])
+
+    def test_exodus_in_every_netcdf(self):
+        if not netCDF4:
+            self.skipTest("netCDF4 is not installed (Debian python3-netcdf4)")
+        meshio.write(self.folder / "a.mesh", self.mixed(), file_format="medit")
+        self.convert(self.folder / "a.mesh", self.folder / "a.e")
+        wanted = run(DELFRONT, "convert", self.folder / "a.e", self.folder / "wanted.vtu")
+        self.assertEqual(wanted[0], 0, wanted[1])
+        for version in ("NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4", "NETCDF4_CLASSIC"):
+            with self.subTest(version):
+                if version.startswith("NETCDF4") and "vtkhdf" not in run(DELFRONT, "--help")[1]:
+                    self.skipTest("built without HDF5")
+                copy = self.folder / f"{version}.e"
+                self.copy_netcdf(self.folder / "a.e", copy, version)
+                self.convert(copy, self.folder / "got.vtu")
+                self.assertEqual((self.folder / "got.vtu").read_bytes(), (self.folder / "wanted.vtu").read_bytes())
+
+    def copy_netcdf(self, source, target, version):
+        with netCDF4.Dataset(source) as old, netCDF4.Dataset(target, "w", format=version) as new:
+            old.set_auto_maskandscale(False)
+            new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+            for name, dimension in old.dimensions.items():
+                new.createDimension(name, None if dimension.isunlimited() else len(dimension))
+            for name, variable in old.variables.items():
+                copied = new.createVariable(name, variable.dtype, variable.dimensions,
+                                            **({"zlib": True} if version == "NETCDF4" else {}))
+                copied.set_auto_maskandscale(False)
+                copied.setncatts({key: variable.getncattr(key) for key in variable.ncattrs()})
+                if len(variable):
+                    copied[:] = variable[:]
+
+    def vtk(self, operation, *paths, newer=False):
+        """What VTK says; Debian's where `newer` does not ask for PyPI's (scripts/setup --peers), which has XDMF."""
+        peers = pathlib.Path(os.environ.get("DELFRONT_PEERS") or pathlib.Path(__file__).parents[2] / "build" / "peers")
+        python = peers / "venv" / "bin" / "python3" if newer else sys.executable
+        if run(python, "-c", "import vtk")[0] != 0 if pathlib.Path(python).exists() else True:
+            self.skipTest("VTK is not installed (Debian python3-vtk9; of PyPI by scripts/setup --peers)")
+        status, text = run(python, "-c", VTK_SCRIPT, operation, *paths)
+        if status == 77:
+            self.skipTest(f"this VTK cannot {operation} {paths[0]}")
+        self.assertEqual(status, 0, text)
+        return text
+
+    def check_vtk(self, text):
+        found = sorted(line.split()[1:] for line in text.splitlines() if line.startswith("cell"))
+        self.assertEqual(found, [["12", "1.0"], ["13", "0.5"], ["14", "0.233333"], ["5", "0.0"], ["5", "0.0"], ["9", "0.0"],
+                                 ["9", "0.0"]])
+        for name in ("region_id", "patch_id"):
+            self.assertIn(f"array {name}", text)
+
+    def mixed_in(self, name, leave_out=""):
+        if name.endswith(("vtkhdf", "xdmf")) and "vtkhdf" not in run(DELFRONT, "--help")[1]:
+            self.skipTest("built without HDF5")
+        meshio.write(self.folder / "a.mesh", self.mixed(leave_out), file_format="medit")
+        self.convert(self.folder / "a.mesh", self.folder / name)
+        return self.folder / name
+
+    def test_vtk_reads_our_vtkhdf(self):
+        text = self.vtk("look", self.mixed_in("a.vtkhdf"))
+        self.check_vtk(text)
+        self.assertIn("array patch:patch_2", text)
+
+    def test_newer_vtk_reads_our_vtkhdf_and_xdmf(self):
+        self.check_vtk(self.vtk("look", self.mixed_in("a.vtkhdf"), newer=True))
+        self.check_vtk(self.vtk("look", self.mixed_in("a.xdmf"), newer=True))
+
+    def test_vtk_reads_our_exodus_with_its_names(self):
+        text = self.vtk("exodus", self.mixed_in("a.e"))
+        for line in ("object patch_1 2", "object patch_2 2", "object region_3 1", "object region_4 1", "object region_5 1"):
+            self.assertIn(line, text)
+
+    def test_files_of_vtk_are_read(self):
+        # Its XDMF has quads of mixed grids as polygons without a count, which it cannot read either; PyPI's 9.7 falls over
+        # Exodus.
+        for operation, name, newer, *more in (("write_vtkhdf", "v.vtkhdf", True, "0"), ("write_vtkhdf", "z.vtkhdf", True, "5"),
+                                              ("write_xdmf", "v.xdmf", True), ("write_exodus", "v.e", False)):
+            with self.subTest(name):
+                source = self.mixed_in("a.vtu", "quad" if name == "v.xdmf" else "")
+                self.vtk(operation, source, self.folder / name, *more, newer=newer)
+                self.convert(self.folder / name, self.folder / "back.msh")
+                self.check_mixed(self.folder / "back.msh", name)
 
     def test_files_of_gmsh_are_read(self):
         for extension in ("bdf", "inp", "mesh", "cgns"):

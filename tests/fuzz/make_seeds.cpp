@@ -162,6 +162,16 @@ int main(int argc, char** argv) {
                          "\0\0\0\0\0\0\0\0\0\xf0?\0\0\0\0\0\0\xf0?\0\0\0\0\0\0\xf0?6\0\0\0\0\0\0\0",
                          72));
   write_text(
+      root, "xdmf",
+      "<Xdmf Version=\"3.0\"><Domain><Grid Name=\"g\"><Information Name=\"I\"><![CDATA[<main><map "
+      "key=\"patch:a\" dim=\"2\" kind=\"wall\">0</map></main>]]></Information><Geometry GeometryType=\"XYZ\">"
+      "<DataItem Dimensions=\"5 3\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataItem></Geometry><Topology "
+      "TopologyType=\"Mixed\"><DataItem>6 0 1 2 3 4 0 1 2 2 2 0 1 1 1 3 3 3 0 1 4 16 4 3 0 1 2 3 0 1 4 3 1 2 4 3 "
+      "2 0 4</DataItem></Topology><Attribute Name=\"patch_id\" Center=\"Cell\"><DataItem>-1 0 -1 -1 0 -1</DataItem>"
+      "</Attribute><Attribute Name=\"t\" Center=\"Node\"><DataItem>1 2 3 4 5</DataItem></Attribute></Grid><Grid>"
+      "<Geometry Type=\"XY\"><DataItem>0 0 1 0</DataItem></Geometry><Topology Type=\"Polyline\" "
+      "NodesPerElement=\"2\"><DataItem>0 1</DataItem></Topology></Grid></Domain></Xdmf>");
+  write_text(
       root, "nastran",
       "$HMNAME COMP                   1\"wall\"\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID    2               1.0+0   0.0     "
       "0.0\nGRID*   3                               0.              1.\n*       0.\nGRID,4,,0.,0.,1.\nCTRIA3,1,1,1,2,"

@@ -14,6 +14,7 @@ mkdir -p "$build/finds"
 failed=0
 for source in "$root"/tests/fuzz/fuzz_*.cpp; do
   name=$(basename "$source" .cpp)
+  [[ -x $build/tests/fuzz/$name ]] || { echo "$name: not built, its library is missing"; continue; }
   format=${name#fuzz_}
   format=${format#read_}
   mkdir -p "$build/corpus/$format" "$build/seeds/$format"
