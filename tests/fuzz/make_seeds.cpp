@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_seeds FOLDER: small valid files of every format and encoding, FOLDER/<format>/…, for the fuzzers to start from.
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -114,6 +115,13 @@ void write_text(const std::string& root, const std::string& format, const std::s
   std::ofstream(root + "/" + format + "/by_hand", std::ios::binary) << text;
 }
 
+/// Bytes for recipes (hdf5_recipe.hpp), which any will do for: of a length that reaches all objects.
+std::string any_bytes(std::uint32_t seed) {
+  std::string bytes;
+  for (int i = 0; i < 600; ++i) bytes += static_cast<char>((seed = seed * 1664525u + 1013904223u) >> 24);
+  return bytes;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -171,6 +179,8 @@ int main(int argc, char** argv) {
       "</Attribute><Attribute Name=\"t\" Center=\"Node\"><DataItem>1 2 3 4 5</DataItem></Attribute></Grid><Grid>"
       "<Geometry Type=\"XY\"><DataItem>0 0 1 0</DataItem></Geometry><Topology Type=\"Polyline\" "
       "NodesPerElement=\"2\"><DataItem>0 1</DataItem></Topology></Grid></Domain></Xdmf>");
+  write_text(root, "vtkhdf", any_bytes(1));
+  write_text(root, "netcdf4", any_bytes(2));
   write_text(
       root, "nastran",
       "$HMNAME COMP                   1\"wall\"\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID    2               1.0+0   0.0     "
