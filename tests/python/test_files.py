@@ -56,6 +56,18 @@ def test_convert(mesh, tmp_path):
         df.convert(tmp_path / "a.vtu", tmp_path / "a.vtu")
 
 
+def test_starter_files(mesh, tmp_path):
+    said = mesh.write(tmp_path / "a.su2", solver="su2")
+    assert all(name in (tmp_path / "a.cfg").read_text() for name in mesh.boundaries)
+    assert any("wall" in sentence for sentence in said)  # no kinds were given
+    made = df.convert(tmp_path / "a.su2", f"{tmp_path}/case/", solver="openfoam")
+    assert f"{tmp_path}/case/system/controlDict" in made.files_written
+    assert all(name in (tmp_path / "case" / "0" / "p").read_text() for name in mesh.boundaries)
+    with pytest.raises(df.UsageError, match="openfoam"):
+        mesh.write(tmp_path / "b.su2", solver="openfoam")
+    assert not (tmp_path / "b.su2").exists()
+
+
 def test_refine(mesh, tmp_path):
     fine = df.refine(mesh, 1)
     assert fine.num_cells == 8 * mesh.num_cells and fine.check() == []
