@@ -13,7 +13,8 @@ namespace delfront {
 /// @brief A flat facet of any shape: rings around it and in it, edges and points inside, seeds of holes.
 struct FacetOutline {
   std::vector<Point> points;
-  std::vector<std::array<std::uint32_t, 2>> edges;  ///< of the rings and inside, in any order
+  std::vector<std::array<std::uint32_t, 2>> edges;  ///< of the rings and inside, in any order; two
+                                                    ///< equal points are no edge, and left out
   std::vector<Point> holes;                         ///< a place in each
   Point normal;                                     ///< from which side it is seen; of any length but 0
 };

@@ -62,13 +62,16 @@ struct Estimate {
   bool is_at_least = false;                  ///< sizes are finer in places than was looked at
 };
 
+struct GeometryText;
+
 /// @brief What an input of a job holds, for programs that have it in memory.
 struct HeldInput {
-  Mesh mesh;                             ///< facets, lines or a grid; of smooth geometry its first, coarse grid
-  std::string stem;                      ///< name of patches and lines that have none
-  std::shared_ptr<const Brep> brep;      ///< smooth geometry; null: the mesh is all there is
-  std::shared_ptr<const BrepLook> look;  ///< of the smooth geometry
-  CadReport cad;                         ///< of a CAD file
+  Mesh mesh;                                 ///< facets, lines or a grid; of smooth geometry its first, coarse grid
+  std::string stem;                          ///< name of patches and lines that have none
+  std::shared_ptr<const Brep> brep;          ///< smooth geometry; null: the mesh is all there is
+  std::shared_ptr<const BrepLook> look;      ///< of the smooth geometry
+  CadReport cad;                             ///< of a CAD file
+  std::shared_ptr<const GeometryText> text;  ///< what a .geom.toml file says; null: the input is another kind
 };
 
 /// @brief Read an input file, of any kind that jobs take.

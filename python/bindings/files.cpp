@@ -33,20 +33,31 @@ WriteOptions write_options(bool binary, const std::string& version, bool compres
   return {.binary = binary, .version = version, .compress = compress};
 }
 
+/// What was changed or left out, and what starter files take for granted.
+nb::list texts_of(std::vector<std::string> changes, const StarterFiles& starter) {
+  changes.insert(changes.end(), starter.notes.begin(), starter.notes.end());
+  return texts_list(changes);
+}
+
 nb::list write(const Mesh& mesh, const std::string& path, bool binary, const std::string& version, bool compress,
-               const std::string& format, const Hooks& hooks) {
-  const WriteOptions how = write_options(binary, version, compress);
-  check_write_options(how);
-  return texts_list(
-      run_released(hooks, [&](Context& context) { return write_mesh(mesh, path, context, how, format); }));
+               const std::string& format, const std::string& solver, const Hooks& hooks) {
+  const ConvertOptions options{.to = format, .how = write_options(binary, version, compress), .solver = solver};
+  StarterFiles starter;
+  const std::vector<std::string> changes =
+      run_released(hooks, [&](Context& context) { return write_for_solver(mesh, path, options, context, starter); });
+  return texts_of(changes, starter);
 }
 
 nb::tuple convert(const std::string& in, const std::string& out, const std::string& from, const std::string& to,
-                  bool binary, const std::string& version, bool compress, const Hooks& hooks) {
-  const ConvertOptions options{.from = from, .to = to, .how = write_options(binary, version, compress)};
+                  bool binary, const std::string& version, bool compress, const std::string& solver,
+                  const Hooks& hooks) {
+  const ConvertOptions options{
+      .from = from, .to = to, .how = write_options(binary, version, compress), .solver = solver};
   std::vector<std::string> changes;
-  Mesh mesh = run_released(hooks, [&](Context& context) { return convert_file(in, out, options, changes, context); });
-  return nb::make_tuple(std::move(mesh), texts_list(changes));
+  StarterFiles starter;
+  Mesh mesh =
+      run_released(hooks, [&](Context& context) { return convert_file(in, out, options, changes, context, &starter); });
+  return nb::make_tuple(std::move(mesh), texts_of(changes, starter), texts_list(starter.written));
 }
 
 struct RefineWish {
@@ -171,10 +182,10 @@ void add_files(nb::module_& module) {
         return run_released(hooks, [&](Context& context) { return read_mesh(path, context, format); });
       },
       "path"_a, "format"_a, "hooks"_a);
-  module.def("write_mesh", &write, "mesh"_a, "path"_a, "binary"_a, "version"_a, "compress"_a, "format"_a, "hooks"_a,
-             "Returns what the format could not hold and how it was changed.");
+  module.def("write_mesh", &write, "mesh"_a, "path"_a, "binary"_a, "version"_a, "compress"_a, "format"_a, "solver"_a,
+             "hooks"_a, "Returns what the format could not hold and how it was changed.");
   module.def("convert", &convert, "source"_a, "target"_a, "from_format"_a, "format"_a, "binary"_a, "version"_a,
-             "compress"_a, "hooks"_a);
+             "compress"_a, "solver"_a, "hooks"_a);
   module.def("refine", &refine_to_python, "mesh"_a, "geometry"_a.none(), "name"_a, "geometry_name"_a, "levels"_a,
              "feature_angle"_a, "max_cells"_a, "hooks"_a);
   module.def("formats", [] {

@@ -42,14 +42,19 @@ def convert(
     ascii: bool = False,
     compress: bool = False,
     msh_version: str = "",
+    solver: str = "",
     progress: ProgressHook = None,
 ) -> Mesh:
-    """Write a file in another format; what that could not hold stands in ``name_changes`` of the result."""
+    """Write a file in another format; what that could not hold stands in ``name_changes`` of the result.
+
+    ``solver`` ("su2", "openfoam"): also starter files that name every boundary, beside the grid; files that exist are
+    kept. All that was written stands in ``files_written``.
+    """
     with Hooks(progress=progress) as hooks:
-        mesh, changes = _core.convert(
-            path_text(source), path_text(target), from_format, format, not ascii, msh_version, compress, hooks
+        mesh, changes, starter = _core.convert(
+            path_text(source), path_text(target), from_format, format, not ascii, msh_version, compress, solver, hooks
         )
-    return Mesh._of(mesh, name_changes=changes, files_written=[path_text(target)])
+    return Mesh._of(mesh, name_changes=changes, files_written=[path_text(target), *starter])
 
 
 def refine(

@@ -340,15 +340,26 @@ class Mesh:
     # --- out --------------------------------------------------------------------------------------------------------
 
     def write(
-        self, path: PathLike, *, format: str = "", ascii: bool = False, compress: bool = False, msh_version: str = ""
+        self,
+        path: PathLike,
+        *,
+        format: str = "",
+        ascii: bool = False,
+        compress: bool = False,
+        msh_version: str = "",
+        solver: str = "",
     ) -> list[str]:
         """Write a file, whole or not at all; a name that ends in / is an OpenFOAM case.
 
-        Returns what the format could not hold and how it was changed, as sentences.
-        Raises WriteError; InputError where the format cannot hold this grid; UsageError for an unknown format.
+        ``solver`` ("su2", "openfoam"): also starter files that name every boundary, beside the grid; files that exist
+        are kept. Returns what the format could not hold and how it was changed, and what starter files take for
+        granted, as sentences. Raises WriteError; InputError where the format cannot hold this grid; UsageError for an
+        unknown format, or a solver that reads another one.
         """
         with Hooks() as hooks:
-            return _core.write_mesh(self._core, path_text(path), not ascii, msh_version, compress, format, hooks)
+            return _core.write_mesh(
+                self._core, path_text(path), not ascii, msh_version, compress, format, solver, hooks
+            )
 
     def to_meshio(self) -> Any:
         """The grid as meshio.Mesh: cells, point data, groups as cell sets and as "gmsh:physical" tags.

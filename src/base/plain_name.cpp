@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/plain_name.hpp"
 
+#include <fmt/format.h>
+
 #include <cstddef>
 
 namespace delfront {
@@ -44,6 +46,11 @@ std::string plain_name(std::string_view name) {
     name.remove_prefix(character.size());
   }
   return plain;
+}
+
+std::string say_plain_names(const std::string& path, std::size_t num_changed) {
+  return fmt::format("{}: {} control characters, or bytes that are no text (UTF-8): they are '_' here", path,
+                     num_changed == 1 ? "1 name holds" : fmt::format("{} names hold", num_changed));
 }
 
 }  // namespace delfront

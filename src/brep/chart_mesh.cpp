@@ -62,8 +62,9 @@ void ChartMesh::improve(int passes, const Context& context) {
     for (int k = 0; k < 2 && flip_all() > 0; ++k) context.check_limits();
   }
   for (int k = 0; k < kFlipPasses && flip_all() > 0; ++k) context.check_limits();
-  if (!is_hopeless())
-    for (int k = 0; k < kLiftPasses && lift_angles(context) > 0; ++k) flip_all();
+  if (is_hopeless()) return;
+  is_calm_.assign(is_calm_.size(), false);
+  for (int k = 0; k < kLiftPasses && lift_angles(context) > 0; ++k) flip_all();
 }
 
 bool ChartMesh::is_small(TriIndex t) const {
@@ -90,19 +91,19 @@ std::size_t ChartMesh::lift_angles(const Context& context) {
     if (!is_inside(t)) continue;
     if (!is_small(t)) continue;
     for (const VertexIndex v : c_.tri[t].node)
-      if (v >= first_free_) count += lift_angle(v);
+      if (v >= first_free_ && !is_calm_[v]) {
+        const bool is_better = lift_angle(v);
+        is_calm_[v] = !is_better;
+        count += is_better;
+      }
   }
   return count;
 }
 
 bool ChartMesh::lift_angle(VertexIndex v) {
-  if (!collect_star(c_, v, star_, vertices_)) return false;
-  ring_.clear();
+  if (!collect_ring(v)) return false;
   double length2 = 0;
-  for (const VertexIndex w : vertices_) {
-    ring_.push_back(at_[w]);
-    length2 += squared_length(at_[w] - at_[v]) / double(vertices_.size());
-  }
+  for (const Point& w : ring_) length2 += squared_length(w - at_[v]) / double(ring_.size());
   bool is_better = false;
   double reach = 0.25 * std::sqrt(length2);  // in space; halved where no direction helps
   for (int k = 0; k < kLiftSteps; ++k) {
@@ -181,15 +182,29 @@ bool ChartMesh::flip(EdgeRef ref) {
   return true;
 }
 
+bool ChartMesh::collect_ring(VertexIndex v) {
+  if (!collect_star(c_, v, star_, vertices_)) return false;
+  ring_.clear();
+  side2_.clear();
+  for (const VertexIndex w : vertices_) {
+    side2_.push_back(squared_length(at_[w] - (ring_.empty() ? at_[vertices_.back()] : ring_.back())));
+    ring_.push_back(at_[w]);
+  }
+  return true;
+}
+
 ChartMesh::Star ChartMesh::measure(Point p, Point normal) const {
   Star star{0, 1};
+  Point u = ring_.back() - p;
+  double u2 = squared_length(u);
   for (std::size_t i = 0; i < ring_.size(); ++i) {
-    const Point a = ring_[i], b = ring_[i + 1 < ring_.size() ? i + 1 : 0];
-    const Point twice = cross(a - p, b - p);
-    const double area2 = length(twice);
+    const Point v = ring_[i] - p, twice = cross(u, v);
+    const double v2 = squared_length(v), side2 = side2_[i], square = squared_length(twice), area2 = std::sqrt(square);
     if (!(dot(twice, normal) > kFoldCosine * area2)) return {-1, 0};
-    star.mean += area2 / (squared_length(a - p) + squared_length(b - p) + squared_length(b - a));
-    star.worst = std::min(star.worst, squared_sine(p, a, b));
+    star.mean += area2 / (u2 + v2 + side2);
+    star.worst = std::min(star.worst, square / std::max({u2 * v2, u2 * side2, v2 * side2}));
+    u = v;
+    u2 = v2;
   }
   star.mean *= 4 * kRegularHeight / double(ring_.size());
   return star;
@@ -197,9 +212,7 @@ ChartMesh::Star ChartMesh::measure(Point p, Point normal) const {
 
 /// To the mean of the places from which the edges round it would be seen as in a regular triangle.
 bool ChartMesh::move(VertexIndex v) {
-  if (!collect_star(c_, v, star_, vertices_)) return false;
-  ring_.clear();
-  for (const VertexIndex w : vertices_) ring_.push_back(at_[w]);
+  if (!collect_ring(v)) return false;
   const Point area = cross(x_[v], y_[v]);
   const Point n = area / length(area);
   const Star before = measure(at_[v], n);
@@ -215,7 +228,9 @@ bool ChartMesh::move(VertexIndex v) {
   const Point d = sum / double(ring_.size()) - at_[v];
   const double e = dot(x_[v], x_[v]), f = dot(x_[v], y_[v]), g = dot(y_[v], y_[v]), det = e * g - f * f;
   const double dx = dot(d, x_[v]), dy = dot(d, y_[v]);
-  return try_place(v, {(g * dx - f * dy) / det, (e * dy - f * dx) / det}, before);
+  const bool is_moved = try_place(v, {(g * dx - f * dy) / det, (e * dy - f * dx) / det}, before);
+  is_calm_[v] = !is_moved;
+  return is_moved;
 }
 
 bool ChartMesh::try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst) {

@@ -38,6 +38,7 @@ class ChartMesh {
   std::size_t lift_angles(const Context& context);
   bool lift_angle(VertexIndex v);
   bool try_place(VertexIndex v, Point2 step, const Star& before, bool by_worst = false);
+  bool collect_ring(VertexIndex v);
   Star measure(Point p, Point normal) const;
   bool is_positive() const;
   bool is_inside(TriIndex t) const { return !c_.is_dead(t) && !c_.is_ghost(t) && c_.tri[t].region != kOutside; }
@@ -46,11 +47,12 @@ class ChartMesh {
   const Chart& chart_;
   VertexIndex first_free_;
   std::vector<Point> at_, x_, y_;         ///< by vertex: place and tangents along the chart's axes
-  std::vector<bool> is_calm_;             ///< by vertex: regular, and nothing has moved there since
+  std::vector<bool> is_calm_;             ///< by vertex: regular or tried in vain, and nothing has changed there since
   std::vector<std::uint8_t> is_changed_;  ///< by vertex: its sides are to be looked at
   std::vector<TriIndex> star_;
   std::vector<VertexIndex> vertices_;
-  std::vector<Point> ring_;
+  std::vector<Point> ring_;    ///< round the vertex that is looked at, anticlockwise
+  std::vector<double> side2_;  ///< squared lengths of the ring's sides, each before its point
 };
 
 }  // namespace delfront

@@ -14,9 +14,6 @@ constexpr double kSettled =
     1e-12;  ///< of the squared distance: a step of Newton's method that gains no more is the last
 constexpr int kMostSteps = 40, kMostHalvings = 10;
 
-/// A number for two degrees.
-constexpr int pair_of(int u, int v) { return (kMostDegree + 1) * u + v; }
-
 class NurbsSurface final : public SmoothSurface {
  public:
   explicit NurbsSurface(const NurbsSurfaceData& data)
@@ -66,25 +63,29 @@ class NurbsSurface final : public SmoothSurface {
   /// What is computed with the degrees known to the compiler where they are usual ones, else with 0 for both.
   template <class Work>
   auto with_degrees(const Work& work) const -> decltype(work.template operator()<0, 0>()) {
-    switch (pair_of(u_.degree(), v_.degree())) {
-      case pair_of(1, 1):
-        return work.template operator()<1, 1>();
-      case pair_of(1, 2):
-        return work.template operator()<1, 2>();
-      case pair_of(1, 3):
-        return work.template operator()<1, 3>();
-      case pair_of(2, 1):
-        return work.template operator()<2, 1>();
-      case pair_of(2, 2):
-        return work.template operator()<2, 2>();
-      case pair_of(2, 3):
-        return work.template operator()<2, 3>();
-      case pair_of(3, 1):
-        return work.template operator()<3, 1>();
-      case pair_of(3, 2):
-        return work.template operator()<3, 2>();
-      case pair_of(3, 3):
-        return work.template operator()<3, 3>();
+    const auto with_v = [&]<int kU>() {
+      switch (v_.degree()) {
+        case 1:
+          return work.template operator()<kU, 1>();
+        case 2:
+          return work.template operator()<kU, 2>();
+        case 3:
+          return work.template operator()<kU, 3>();
+        case 4:
+          return work.template operator()<kU, 4>();
+        default:
+          return work.template operator()<0, 0>();
+      }
+    };
+    switch (u_.degree()) {
+      case 1:
+        return with_v.template operator()<1>();
+      case 2:
+        return with_v.template operator()<2>();
+      case 3:
+        return with_v.template operator()<3>();
+      case 4:
+        return with_v.template operator()<4>();
       default:
         return work.template operator()<0, 0>();
     }

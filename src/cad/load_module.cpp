@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFile = "libdelfront_cad.so";
 
-/// Beside the program and beside the library that holds this code, and in the folders lib next to them.
+/// Beside the program and beside the library that holds this code, and in the folders lib next to them; last by name
+/// alone, where the system's loader looks (a program that cannot find itself, as where /proc is not mounted).
 std::vector<std::string> places() {
   std::vector<fs::path> folders;
   std::error_code ignored;
@@ -35,6 +36,7 @@ std::vector<std::string> places() {
       if (fs::exists(path, ignored) && std::find(found.begin(), found.end(), path) == found.end())
         found.push_back(path);
     }
+  found.push_back(kFile);
   return found;
 }
 
@@ -66,19 +68,19 @@ Loaded open(const std::string& path) {
 
 Loaded load() {
   if (const char* const given = std::getenv("DELFRONT_CAD_MODULE"); given && *given) return open(given);
-  Loaded last;
+  Loaded first;
   for (const std::string& path : places()) {
     Loaded result = open(path);
     if (result.info) return result;
-    last = std::move(result);
+    if (first.why.empty() && path != kFile) first = std::move(result);
   }
-  if (last.why.empty())
-    last.why = fmt::format(
-        "{} is not there (beside the program or in ../lib; DELFRONT_CAD_MODULE names another place). It is built where "
-        "OpenCASCADE is found: install libocct-data-exchange-dev and libocct-ocaf-dev (scripts/setup does), and build "
-        "again",
+  if (first.why.empty())
+    first.why = fmt::format(
+        "{} is not there (beside the program or in ../lib; DELFRONT_CAD_MODULE names another place). Install the "
+        "package delfront-cad; or, where you build: libocct-data-exchange-dev and libocct-ocaf-dev (scripts/setup "
+        "does), and build again",
         kFile);
-  return last;
+  return first;
 }
 
 }  // namespace

@@ -269,11 +269,7 @@ void plain_names(const std::string& path, Mesh& mesh, Context& context) {
     group.name = name;
     ++changed;
   }
-  if (changed > 0)
-    context.warn(
-        fmt::format("{}: {} name{} hold{} control characters, or bytes that are no text (UTF-8): they are '_' "
-                    "here",
-                    path, changed, changed == 1 ? "" : "s", changed == 1 ? "s" : ""));
+  if (changed > 0) context.warn(say_plain_names(path, changed));
 }
 
 Mesh read_any(const std::string& path, Context& context, const std::string& format) {

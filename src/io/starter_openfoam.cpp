@@ -158,7 +158,7 @@ class FoamStarter {
               "// RAS with kOmegaSST, and 0/ would hold k, omega and nut.\nsimulationType  laminar;\n");
   }
 
-  /// Of the walls whose kind was given; what is only assumed to be one, or a floor, the user leaves out.
+  /// Coefficients of the force on boundaries of kind wall; a floor among them is the user's to leave out.
   std::string forces() const {
     std::vector<std::string> walls;
     for (const StarterBoundary& boundary : boundaries_)

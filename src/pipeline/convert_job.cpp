@@ -17,7 +17,6 @@ void check_write_options(const WriteOptions& options) {
     throw UsageError(fmt::format("version {} of MSH (--msh-version): allowed are 2.2 and 4.1", options.version));
 }
 
-/// Before the input is read.
 static void check_starter_solver(const ConvertOptions& options, const std::string& out) {
   if (options.solver.empty()) return;
   const std::vector<std::string>& known = starter_solvers();
@@ -30,7 +29,7 @@ static void check_starter_solver(const ConvertOptions& options, const std::strin
 
 Mesh convert_file(const std::string& in, const std::string& out, const ConvertOptions& options,
                   std::vector<std::string>& changes, Context& context, StarterFiles* starter) {
-  check_write_options(options.how);
+  check_write_options(options.how);  // before the input is read
   check_starter_solver(options, out);
   std::error_code ignored;
   if (std::filesystem::equivalent(in, out, ignored))
@@ -41,11 +40,19 @@ Mesh convert_file(const std::string& in, const std::string& out, const ConvertOp
         "{} is smooth geometry, which has no cells yet: delfront mesh {} -o {} --stop-after surface grids it", in, in,
         out));
   Mesh mesh = read_mesh(in, context, options.from);
-  changes = write_mesh(mesh, out, context, options.how, options.to);
-  if (options.solver.empty()) return mesh;
-  StarterFiles made = write_starter_files(mesh, out, options.solver, context, options.to);
+  StarterFiles made;
+  changes = write_for_solver(mesh, out, options, context, made);
   if (starter) *starter = std::move(made);
   return mesh;
+}
+
+std::vector<std::string> write_for_solver(const Mesh& mesh, const std::string& out, const ConvertOptions& options,
+                                          Context& context, StarterFiles& starter) {
+  check_write_options(options.how);
+  check_starter_solver(options, out);
+  std::vector<std::string> changes = write_mesh(mesh, out, context, options.how, options.to);
+  if (!options.solver.empty()) starter = write_starter_files(mesh, out, options.solver, context, options.to);
+  return changes;
 }
 
 }  // namespace delfront

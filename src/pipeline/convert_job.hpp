@@ -24,6 +24,13 @@ struct ConvertOptions {
 Mesh convert_file(const std::string& in, const std::string& out, const ConvertOptions& options,
                   std::vector<std::string>& changes, Context& context, StarterFiles* starter = nullptr);
 
+/// @brief Write a grid with starter files of options.solver; options.from is not used.
+/// @return what the format could not hold and how it was changed, as sentences
+/// @throws UsageError  a version of MSH that there is not; a solver that there is not, or that reads another format
+/// @throws as write_mesh, write_starter_files
+std::vector<std::string> write_for_solver(const Mesh& mesh, const std::string& out, const ConvertOptions& options,
+                                          Context& context, StarterFiles& starter);
+
 /// @brief That the version of an MSH file is one that can be written. @throws UsageError
 void check_write_options(const WriteOptions& options);
 

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace delfront {
 namespace {
@@ -89,15 +90,41 @@ std::string cad_text(const CadReport& cad) {
   return text;
 }
 
+/// What a cylinder and a sphere are known by; the second is 0 for spheres.
+struct Round {
+  double radius;
+  Point axis;
+};
+
+std::optional<Round> round_of(const Brep& brep, const BrepFace& face, const std::string& surface) {
+  if ((surface != "cylinder" && surface != "sphere") || face.loops.empty() || face.loops[0].empty()) return {};
+  const BrepUse& use = face.loops[0][0];
+  Point2 uv = use.curve->at(brep.edges[use.edge].range[0]);
+  if (surface == "sphere") uv.y = 0;  // away from poles
+  const SurfaceDerivatives s = face.surface->derivatives(uv);
+  const double bend = largest_curvature(s);
+  if (!(bend > 0)) return {};
+  return Round{1 / bend, surface == "cylinder" ? s.v / length(s.v) : Point{}};
+}
+
+/// A direction as it is read: three digits, no -0.
+std::string direction_text(Point n) {
+  const auto rounded = [](double x) { return std::round(1000 * x) / 1000 + 0.0; };
+  return fmt::format("({:g}, {:g}, {:g})", rounded(n.x), rounded(n.y), rounded(n.z));
+}
+
+std::string round_text(const std::optional<Round>& round) {
+  if (!round) return {};
+  return fmt::format("radius {:.6g}, ", round->radius) +
+         (length(round->axis) > 0 ? fmt::format("axis along {}, ", direction_text(round->axis)) : "");
+}
+
 std::string place_text(const FacePlace& place) {
   Point at = place.at;
   for (int k = 0; k < 3; ++k)  // what is next to nothing beside the rest
     if (std::abs(at[k]) < 1e-9 * (length(place.at) + place.box.diagonal())) at[k] = 0;
   std::string text = fmt::format("area {:.4g} at ({:.4g}, {:.4g}, {:.4g}), ", place.area, at.x, at.y, at.z);
-  if (!place.normal) return text;
-  const auto rounded = [](double x) { return std::round(1000 * x) / 1000 + 0.0; };  // -0 becomes 0
-  const Point n = *place.normal;
-  return text + fmt::format("looks along ({:g}, {:g}, {:g}), ", rounded(n.x), rounded(n.y), rounded(n.z));
+  return place.normal ? text + fmt::format("looks along {}, ", direction_text(*place.normal)) : text;
 }
 
 Json numbers(Point p) { return {p.x, p.y, p.z}; }
@@ -166,6 +193,9 @@ Json geometry_json(const Brep& brep, const std::vector<FacePlace>& places, const
     if (f < cad.faces.size()) {
       const CadFace& facts = cad.faces[f];
       json["surface"] = facts.surface;
+      const std::optional<Round> round = round_of(brep, face, facts.surface);
+      json["radius"] = round ? Json(round->radius) : Json(nullptr);
+      json["axis"] = round && length(round->axis) > 0 ? numbers(round->axis) : Json(nullptr);
       json["colour"] = facts.colour;
       json["layer"] = facts.layer;
       json["solids"] = facts.solids;
@@ -205,7 +235,8 @@ std::string geometry_text(const Brep& brep, const std::vector<FacePlace>& places
     const BrepFace& face = brep.faces[FaceId(f)];
     const BrepFaceReport& made = grid.faces[f];
     std::string what = face.kind.empty() ? "" : face.kind + ", ";
-    if (f < cad.faces.size()) what += cad.faces[f].surface + ", ";
+    if (f < cad.faces.size())
+      what += cad.faces[f].surface + ", " + round_text(round_of(brep, face, cad.faces[f].surface));
     what += place_text(places[f]);
     if (f < cad.faces.size() && !cad.faces[f].colour.empty()) what += "colour " + cad.faces[f].colour + ", ";
     text += fmt::format("face {:<9} {:<20} {}{} loop{}, {} triangles {}, angles from {:.1f} deg\n", f + 1, face.name,

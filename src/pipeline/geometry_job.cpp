@@ -12,6 +12,7 @@
 #include <map>
 #include <mutex>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -112,6 +113,34 @@ void tell(const CadReport& cad, const std::string& path, Context& context) {
                     path, cad.free_edges, first_place(cad)));
 }
 
+/// Of faces, edges, corners and parts, wherever they stand.
+void plain_names(Brep& brep, CadReport& cad, const std::string& path, Context& context) {
+  std::set<std::string> changed;
+  const auto make_plain = [&](std::string& name) {
+    const std::string plain = plain_name(name);
+    if (plain == name) return;
+    changed.insert(name);
+    name = plain;
+  };
+  for (BrepFace& face : brep.faces) make_plain(face.name);
+  for (BrepEdge& edge : brep.edges) make_plain(edge.name);
+  for (BrepCorner& corner : brep.corners) make_plain(corner.name);
+  for (std::string& region : brep.regions) make_plain(region);
+  for (CadFace& face : cad.faces) {
+    make_plain(face.name);
+    make_plain(face.layer);
+    for (std::string& solid : face.solids) make_plain(solid);
+  }
+  if (!changed.empty()) context.warn(say_plain_names(path, changed.size()));
+}
+
+/// Null where the input is another kind of file.
+std::shared_ptr<const GeometryText> text_of_input(const std::string& file, const JobExtras& extras) {
+  const auto held = extras.held.find(file);
+  if (held != extras.held.end()) return held->second->text;
+  return is_geometry_file(file) ? std::make_shared<GeometryText>(read_geometry(file)) : nullptr;
+}
+
 /// Whoever holds it may read a CAD file; the others wait, and can be stopped.
 class CadTurn {
  public:
@@ -208,6 +237,7 @@ HeldInput read_input(const std::string& path, Context& context, const std::strin
     return held;
   }
   held.stem = geometry_stem(path);
+  if (is_geometry_file(path)) held.text = std::make_shared<GeometryText>(read_geometry(path));
   held.brep = std::make_shared<Brep>(read_brep(path, context, held.cad));
   held.look = std::make_shared<BrepLook>(look_at_brep(*held.brep, context));
   held.mesh = surface_mesh(held.look->grid);
@@ -223,7 +253,9 @@ Brep read_brep(const std::string& path, Context& context, CadReport& cad) {
   } else {
     brep = build_brep(read_geometry(path), path);
   }
-  for (BrepFace& face : brep.faces) face.name = face.name.empty() ? geometry_stem(path) : plain_name(face.name);
+  plain_names(brep, cad, path, context);
+  for (BrepFace& face : brep.faces)
+    if (face.name.empty()) face.name = geometry_stem(path);
   return brep;
 }
 
@@ -232,8 +264,8 @@ void refuse_holes_in_nothing(const std::vector<NamedMesh>& inputs, const std::ve
   std::vector<NamedGeometry> texts;
   std::vector<Box> others;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    if (is_geometry_file(files[i]) && !extras.held.contains(files[i]))
-      texts.push_back({read_geometry(files[i]), files[i]});
+    if (const auto text = text_of_input(files[i], extras))
+      texts.push_back({*text, files[i]});
     else
       others.push_back(inputs[i].mesh.bounding_box());
   }

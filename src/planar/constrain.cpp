@@ -152,8 +152,7 @@ void insert_segments(const PlanarDomain& domain, const std::vector<VertexIndex>&
     inserter.insert(a, b, domain.curve_of_segment[i].value);
   }
   if (!without_length.empty()) {
-    const std::size_t first = without_length[0];
-    const Point2 p = domain.points[domain.segments[first][0]];
+    const Point2 p = grid.complex.point[same_as[domain.segments[without_length[0]][0].index()]];
     grid.warnings.push_back(fmt::format("{} segments of no length were left out, the first at ({:.9g}, {:.9g})",
                                         without_length.size(), p.x, p.y));
   }

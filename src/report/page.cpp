@@ -39,8 +39,9 @@ std::string report_page(std::string_view json, std::string_view defaults, const 
       "<header><h1>{}</h1><p class=\"sub mono\">{}</p></header>\n",
       title, kPageStyle, title, html(text_of(r, "command")));
   for (const std::string& section :
-       {verdict_section(r), tiles_section(r), problems_section(r), warnings_section(r), worst_section(r, mesh),
-        quality_section(r), groups_section(r), surface_section(r), times_section(r), options_section(r, usual)})
+       {verdict_section(r), tiles_section(r), problems_section(r), warnings_section(r), overview_section(mesh),
+        worst_section(r, mesh), quality_section(r), groups_section(r), surface_section(r), times_section(r),
+        options_section(r, usual)})
     if (!section.empty()) page += section + "\n";
   page += fmt::format(
       "<footer>delfront {}. Lengths are in model units, areas and volumes in their squares and cubes, angles in "

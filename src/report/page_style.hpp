@@ -55,6 +55,8 @@ svg { display: block; width: 100%; height: auto; }
 .chart .bar { fill: var(--blue); } .chart .bar.bad { fill: var(--bad); }
 .chart .grid { stroke: var(--line); stroke-width: 1; } .chart .axis { stroke: var(--faint); stroke-width: 1; }
 .chart .tick { fill: var(--faint); font-size: 10px; }
+.overview img { display: block; max-width: 100%; height: auto; margin: 0 auto; }
+.names span { margin-right: 12px; white-space: nowrap; } .names i { display: inline-block; width: 10px; height: 10px; border-radius: 3px; margin-right: 5px; }
 .cells { display: grid; grid-template-columns: repeat(auto-fill, minmax(190px, 1fr)); gap: 14px; }
 .cells figure { border: 1px solid var(--line); border-radius: 8px; padding: 8px 10px; }
 .cell { max-width: 220px; margin: 0 auto 4px; overflow: hidden; }

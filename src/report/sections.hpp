@@ -13,6 +13,8 @@ namespace delfront {
 std::string verdict_section(const Json& r);
 /// @brief The figures that are looked at first.
 std::string tiles_section(const Json& r);
+/// @brief A picture of the whole grid, with the colours of the boundaries.
+std::string overview_section(const Mesh& mesh);
 /// @brief Where the run failed: the error's places, and errors found in the surface or the grid.
 std::string problems_section(const Json& r);
 /// @brief Warnings, and what was changed on the way: names, turned facets, divided boundary, bridges.

@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include "base/base64.hpp"
 #include "delfront/errors.hpp"
 
 #ifdef DELFRONT_VIEWER_PAGE
@@ -39,19 +40,6 @@ std::string_view page_or_throw() {
         "this delfront was built without its viewer, which needs node and npm; install them, run scripts/setup and "
         "build again, or look at the grid with ParaView (delfront convert writes VTU)");
   return built_page();
-}
-
-std::string to_base64(std::string_view bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
-  }
-  return text;
 }
 
 std::string make_export(std::string_view page, const std::string& data) {

@@ -16,7 +16,4 @@ std::string_view page_or_throw();
 /// @param data  of make_page_data(); compressed here
 std::string make_export(std::string_view page, const std::string& data);
 
-/// @brief As RFC 4648 has it, padded.
-std::string to_base64(std::string_view bytes);
-
 }  // namespace delfront

@@ -101,6 +101,12 @@ class SmoothGeometry(case.Case):
         self.write("boxes.geom.toml", box.format("left", 0, 1) + box.format("right", 1, 2))
         self.expect(3, "mesh", "boxes.geom.toml", "-o", "boxes.vtu", says=["left", "right", "cross or touch"])
 
+    def test_names_that_are_no_text_are_said(self):
+        self.write("bell.geom.toml", '[[shape]]\ntype = "sphere"\nname = "a\\u0007b"\nradius = 1\n')
+        done = self.expect(0, "mesh", "bell.geom.toml", "-o", "bell.su2", says=["bell.geom.toml: 1 name holds"])
+        self.assertNotIn("\a", done.stdout + done.stderr)
+        self.assertIn("MARKER_TAG= a_b", (self.folder / "bell.su2").read_text())
+
     def test_a_hole_in_no_body_is_refused(self):
         ball = '[[shape]]\ntype = "sphere"\nname = "hole"\nradius = 1\nreversed = true\norigin = [{}, 0, 0]\n'
         body = '[[shape]]\ntype = "box"\nmin = [-2, -2, -2]\nmax = [2, 2, 2]\n'

@@ -56,6 +56,18 @@ def test_convert(mesh, tmp_path):
         df.convert(tmp_path / "a.vtu", tmp_path / "a.vtu")
 
 
+def test_starter_files(mesh, tmp_path):
+    said = mesh.write(tmp_path / "a.su2", solver="su2")
+    assert all(name in (tmp_path / "a.cfg").read_text() for name in mesh.boundaries)
+    assert any("wall" in sentence for sentence in said)  # no kinds were given
+    made = df.convert(tmp_path / "a.su2", f"{tmp_path}/case/", solver="openfoam")
+    assert f"{tmp_path}/case/system/controlDict" in made.files_written
+    assert all(name in (tmp_path / "case" / "0" / "p").read_text() for name in mesh.boundaries)
+    with pytest.raises(df.UsageError, match="openfoam"):
+        mesh.write(tmp_path / "b.su2", solver="openfoam")
+    assert not (tmp_path / "b.su2").exists()
+
+
 def test_refine(mesh, tmp_path):
     fine = df.refine(mesh, 1)
     assert fine.num_cells == 8 * mesh.num_cells and fine.check() == []
@@ -153,6 +165,11 @@ def test_cad(tmp_path):
     subprocess.run([maker, str(tmp_path)], check=True, capture_output=True, timeout=120)
     geo = df.load(tmp_path / "ahmed.step")
     assert geo.is_smooth and geo.units == "mm" and {"inlet", "slant", "stilts"} <= set(geo.patches)
+    faces = df.info(tmp_path / "ahmed.step")["geometry"]["faces"]
+    stilts = [face for face in faces if face["surface"] == "cylinder" and face["name"] == "stilts"]
+    assert [face["radius"] for face in stilts] == pytest.approx([15] * 4, rel=1e-12)
+    assert all(np.abs(face["axis"]) == pytest.approx([0, 0, 1], abs=1e-12) for face in stilts)
+    assert all(face["radius"] is None for face in faces if face["surface"] == "plane")
     surface = df.mesh(geo, df.Size(accuracy="coarse"), stop_after="surface", output={"units": "m"})
     assert set(surface.boundaries) == set(geo.patches) and "triangle" in surface.cells
     assert surface.box[1][0] == pytest.approx(geo.box[1][0] / 1000)  # the file's own unit serves for output

@@ -69,6 +69,19 @@ def test_nothing_is_written_unless_asked(cube, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+BALL = '[[shape]]\ntype = "sphere"\nname = "{}"\nradius = {}\n'
+
+
+def test_hole_that_lies_in_no_body_is_refused(tmp_path):
+    (tmp_path / "hole.geom.toml").write_text(BALL.format("hole", 1) + "reversed = true\n")
+    (tmp_path / "body.geom.toml").write_text(BALL.format("body", 3))
+    hole, body = (df.load(tmp_path / f"{name}.geom.toml") for name in ("hole", "body"))
+    with pytest.raises(df.InputError, match="lies in no body"):
+        df.mesh(hole, 1.0)
+    shell = df.mesh(hole + body, 1.0)
+    assert 85 < shell.quality.volume < 4 / 3 * np.pi * 26  # not with the hole filled: 113
+
+
 def test_far_field_and_boundaries(cube_geometry):
     geo = df.enclose(cube_geometry, sphere=4 * cube_geometry.chord, name="outside")
     mesh = df.mesh(geo, df.Size(growth=1.5), boundaries={"body": {"select": "*s", "kind": "symmetry"}})

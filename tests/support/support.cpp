@@ -34,6 +34,12 @@ unsigned setting(const char* name, unsigned usual) {
   return given ? static_cast<unsigned>(std::strtoul(given, nullptr, 10)) : usual;
 }
 
+std::size_t count_of(std::string_view text, std::string_view piece) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(piece); at != std::string_view::npos; at = text.find(piece, at + 1)) ++n;
+  return n;
+}
+
 Mesh cube_surface() {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) mesh.points.push_back({double(i & 1), double((i >> 1) & 1), double(i >> 2)});

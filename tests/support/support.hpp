@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "delfront/mesh.hpp"
 #include "delfront/model.hpp"
@@ -20,6 +21,9 @@ std::filesystem::path scratch_folder();
 
 /// @brief A number from the environment, as nightly runs set them.
 unsigned setting(const char* name, unsigned usual);
+
+/// @brief How often a piece stands in a text.
+std::size_t count_of(std::string_view text, std::string_view piece);
 
 /// @brief Unit cube [0,1]^3 of 12 triangles, outward, six patches named xmin … zmax.
 Mesh cube_surface();

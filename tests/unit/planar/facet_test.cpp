@@ -68,6 +68,16 @@ TEST(Facet, an_edge_is_split_at_points_on_it) {
   for (const auto& piece : made.pieces) EXPECT_EQ(piece.edge == 0, piece.a == 4 || piece.b == 4);
 }
 
+TEST(Facet, an_edge_from_a_point_to_itself_is_left_out) {
+  FacetOutline facet = square();
+  facet.edges.insert(facet.edges.begin() + 1, {{2, 2}, {0, 0}});
+  Context context;
+  const FacetTriangles made = triangulate_facet(facet, context);
+  EXPECT_EQ(made.triangles.size(), 2u);
+  EXPECT_EQ(made.pieces.size(), 4u);
+  for (const auto& piece : made.pieces) EXPECT_NE(piece.a, piece.b);
+}
+
 TEST(Facet, holes_are_left_open) {
   FacetOutline facet = square();
   for (const auto& [x, y] : {std::pair{1., 1.}, {2., 1.}, {2., 2.}, {1., 2.}}) facet.points.push_back({x, y, 0});

@@ -6,14 +6,10 @@
 #include <algorithm>
 #include <regex>
 
+#include "support/support.hpp"
+
 namespace delfront {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& piece) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++n;
-  return n;
-}
 
 /// Two tetrahedra with a common face; each has a boundary face of its own name. The first is flat at its edge (0, 1).
 Mesh two_tets() {
@@ -32,14 +28,16 @@ TEST(CellPictures, a_cell_its_neighbour_and_what_it_touches) {
   const std::vector<CellPicture> pictures = draw_cells(two_tets(), {{0}, {1}, {0, 1}, {7}, {}});
   ASSERT_EQ(pictures.size(), 5u);
   for (const CellPicture* single : {&pictures[0], &pictures[1]}) {
-    EXPECT_EQ(count(single->svg, "class=\"near\""), 6u);
-    EXPECT_EQ(count(single->svg, "class=\"sharp\""), 1u);
-    EXPECT_EQ(count(single->svg, "class=\"edge"), 5u);
+    EXPECT_EQ(fixtures::count_of(single->svg, "class=\"near\""), 6u);
+    EXPECT_EQ(fixtures::count_of(single->svg, "class=\"sharp\""), 1u);
+    EXPECT_EQ(fixtures::count_of(single->svg, "class=\"edge"), 5u);
   }
   EXPECT_EQ(pictures[0].touches, std::vector<std::string>{"of the first"});
   EXPECT_EQ(pictures[1].touches, std::vector<std::string>{"of the second"});
-  EXPECT_EQ(count(pictures[2].svg, "class=\"near\""), 0u);  // both are drawn themselves
-  EXPECT_EQ(count(pictures[2].svg, "class=\"edge") + count(pictures[2].svg, "class=\"sharp\""), 12u);
+  EXPECT_EQ(fixtures::count_of(pictures[2].svg, "class=\"near\""), 0u);  // both are drawn themselves
+  EXPECT_EQ(
+      fixtures::count_of(pictures[2].svg, "class=\"edge") + fixtures::count_of(pictures[2].svg, "class=\"sharp\""),
+      12u);
   EXPECT_EQ(pictures[2].touches.size(), 2u);
   EXPECT_TRUE(pictures[3].svg.empty());  // there is no such cell
   EXPECT_TRUE(pictures[4].svg.empty());

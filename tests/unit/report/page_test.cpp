@@ -5,15 +5,10 @@
 
 #include "report/charts.hpp"
 #include "report/html.hpp"
+#include "support/support.hpp"
 
 namespace delfront {
 namespace {
-
-std::size_t count(const std::string& text, const std::string& piece) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++n;
-  return n;
-}
 
 TEST(Html, nothing_from_outside_is_markup) {
   EXPECT_EQ(html("<b a=\"1\" c='2'>&amp;"), "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;amp;");
@@ -34,9 +29,9 @@ TEST(Html, numbers_are_as_in_the_terminal) {
 TEST(Histogram, one_in_a_million_is_seen_and_none_is_not) {
   const std::string svg =
       histogram_svg({{"low", 0}, {"high", 30}, {"counts", {1, 0, 1000000}}}, "deg", {.at_least = 10});
-  EXPECT_EQ(count(svg, "<rect"), 3u);
-  EXPECT_EQ(count(svg, "class=\"bar bad\""), 1u);  // 0 to 10
-  EXPECT_EQ(count(svg, "height=\"0.00\""), 1u);
+  EXPECT_EQ(fixtures::count_of(svg, "<rect"), 3u);
+  EXPECT_EQ(fixtures::count_of(svg, "class=\"bar bad\""), 1u);  // 0 to 10
+  EXPECT_EQ(fixtures::count_of(svg, "height=\"0.00\""), 1u);
   EXPECT_NE(svg.find("<title>20 to 30 and more: 1,000,000</title>"), std::string::npos);
   EXPECT_NE(svg.find(">1M<"), std::string::npos);
   EXPECT_EQ(histogram_svg({{"low", 0}, {"high", nullptr}, {"counts", {1}}}, "", {}), "");

@@ -230,17 +230,6 @@ TEST(ReadDefects, another_file_is_refused) {
   EXPECT_THROW(read_defects(path, context), InputError);
 }
 
-TEST(Page, base64_as_the_rfc_has_it) {
-  const std::pair<const char*, const char*> rows[] = {{"", ""},
-                                                      {"f", "Zg=="},
-                                                      {"fo", "Zm8="},
-                                                      {"foo", "Zm9v"},
-                                                      {"foob", "Zm9vYg=="},
-                                                      {"fooba", "Zm9vYmE="},
-                                                      {"foobar", "Zm9vYmFy"}};
-  for (const auto& [plain, text] : rows) EXPECT_EQ(to_base64(plain), text);
-}
-
 TEST(Page, an_export_holds_page_and_data) {
   const std::string page = make_export("<p>a</p><!--delfront-data--><script>b</script>", std::string(1000, 'x'));
   EXPECT_TRUE(page.starts_with("<p>a</p><script type=\"text/plain\" id=\"delfront-data\">"));
