@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
@@ -18,7 +17,9 @@
 #include "delfront/refine_grid.hpp"
 #include "delfront/version.hpp"
 #include "guard.hpp"
+#include "io/grid_files.hpp"
 #include "pipeline/facts_text.hpp"
+#include "pipeline/job_checks.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/refine_job.hpp"
 #include "pipeline/report_files.hpp"
@@ -28,8 +29,6 @@
 namespace delfront::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 const char* const kFooter =
     "Tetrahedra, hexahedra and prisms become 8, pyramids 6 and 4 tetrahedra, triangles and quads 4. Names, kinds and\n"
@@ -154,9 +153,10 @@ class RefineCommand : public Command {
   void check_report() const {
     if (report_ == "-") return;
     for (const std::string& file : report_files(report_)) {
-      refuse_to_overwrite(file);
-      if (std::find(outputs_.begin(), outputs_.end(), file) != outputs_.end())
-        throw UsageError(fmt::format("-o and --report name the same file, {}", file));
+      refuse_to_overwrite_inputs({file});
+      for (const std::string& out : outputs_)
+        if (find_same_file(file, files_written_as(out, to_)))
+          throw UsageError(fmt::format("-o and --report name the same file, {}", file));
       check_writable(file);
     }
   }
@@ -171,16 +171,14 @@ class RefineCommand : public Command {
     check_refine_options(options_, "--levels", "--feature-angle");
     for (const std::string& out : outputs_) {
       format_of(out, to_, true);
-      refuse_to_overwrite(out);
+      refuse_to_overwrite_inputs(files_written_as(out, to_));
       check_writable(out);
     }
   }
 
-  void refuse_to_overwrite(const std::string& out) const {
-    std::error_code ignored;
-    for (const std::string& in : {in_, geometry_})
-      if (!in.empty() && fs::equivalent(in, out, ignored))
-        throw UsageError(fmt::format("{} is an input and would be overwritten; give the output another name", out));
+  void refuse_to_overwrite_inputs(const std::vector<std::string>& written) const {
+    refuse_to_overwrite(in_, from_, written);
+    refuse_to_overwrite(geometry_, "", written);
   }
 
   void set_limits(Context& context) const {

@@ -19,9 +19,11 @@ constexpr std::size_t kLongestCgns = 32;
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+bool is_word(NameRule rule) { return rule == NameRule::foam_word || rule == NameRule::any_case; }
+
 char fit_character(char c, NameRule rule) {
   const auto code = static_cast<unsigned char>(c);
-  if (code < 32 || code == 127) return rule == NameRule::foam_word || rule == NameRule::word ? '_' : ' ';
+  if (code < 32 || code == 127) return is_word(rule) || rule == NameRule::word ? '_' : ' ';
   switch (rule) {
     case NameRule::line:
       return c;
@@ -31,8 +33,9 @@ char fit_character(char c, NameRule rule) {
     case NameRule::cgns:
       return c == '/' ? '_' : c;
     case NameRule::word:
-      return std::string_view(" %=,;()\"'{}").find(c) == std::string_view::npos ? c : '_';
+      return std::string_view(" !%=,;()\"'{}").find(c) == std::string_view::npos ? c : '_';
     case NameRule::foam_word:
+    case NameRule::any_case:
       return is_letter(c) || is_digit(c) || c == '_' || c == '-' || c == '.' ? c : '_';
   }
   return c;
@@ -44,9 +47,18 @@ std::string fit_name(const std::string& name, NameRule rule, const char* role) {
   if (rule == NameRule::cgns && fitted.size() > kLongestCgns) fitted.resize(kLongestCgns);
   fitted = std::string(trimmed(fitted));
   if (fitted.empty()) return role;
-  if (rule == NameRule::foam_word && !is_letter(fitted[0]) && fitted[0] != '_')
-    fitted = fmt::format("{}_{}", role, fitted);
+  if ((rule == NameRule::hdf5 || rule == NameRule::cgns) && (fitted == "." || fitted == ".."))
+    return std::string(fitted.size(), '_');  // paths there
+  if (is_word(rule) && !is_letter(fitted[0]) && fitted[0] != '_') fitted = fmt::format("{}_{}", role, fitted);
   return fitted;
+}
+
+/// What must not be there twice.
+std::string key_of(std::string name, NameRule rule) {
+  if (rule == NameRule::any_case)
+    for (char& c : name)
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return name;
 }
 
 }  // namespace
@@ -60,13 +72,13 @@ std::vector<std::string> fit_names(const Mesh& mesh, NameRule rule, const char* 
   for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
     const Group& group = mesh.groups[GroupId(i)];
     fitted[i] = fit_name(group.name, rule, role_name(mesh, group.dimension));
-    if (fitted[i] == group.name) is_settled[i] = taken.insert({group.dimension, fitted[i]}).second;
+    if (fitted[i] == group.name) is_settled[i] = taken.insert({group.dimension, key_of(fitted[i], rule)}).second;
   }
   for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
     if (is_settled[i]) continue;
     const Group& group = mesh.groups[GroupId(i)];
     const std::string base = fitted[i];
-    for (int number = 2; !taken.insert({group.dimension, fitted[i]}).second; ++number) {
+    for (int number = 2; !taken.insert({group.dimension, key_of(fitted[i], rule)}).second; ++number) {
       const std::string end = fmt::format("_{}", number);
       fitted[i] = (rule == NameRule::cgns ? base.substr(0, kLongestCgns - end.size()) : base) + end;
     }

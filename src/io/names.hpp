@@ -12,9 +12,10 @@ namespace delfront {
 enum class NameRule {
   line,       ///< no control characters, not empty (VTK XML, PLY, STL, OBJ, medit comments)
   quoted,     ///< as line, and no double quotes (MSH)
-  word,       ///< as line, and no blanks nor any of %=,;()"'{} (SU2)
-  foam_word,  ///< letters, digits, '_', '-', '.', beginning with a letter or '_' (OpenFOAM, Abaqus, Fluent)
-  hdf5,       ///< as line, without '/' (VTKHDF)
+  word,       ///< as line, and no blanks nor any of !%=,;()"'{} (SU2, UGRID's .mapbc)
+  foam_word,  ///< letters, digits, '_', '-', '.', beginning with a letter or '_' (OpenFOAM, Fluent)
+  any_case,   ///< as foam_word, and large and small letters are the same (Abaqus)
+  hdf5,       ///< as line, without '/', not "." nor ".." (VTKHDF)
   cgns        ///< as hdf5, and at most 32 characters (CGNS)
 };
 

@@ -12,6 +12,7 @@
 #include "delfront/errors.hpp"
 #include "delfront/io.hpp"
 #include "io/formats.hpp"
+#include "io/grid_files.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
 
@@ -19,7 +20,8 @@ namespace delfront {
 
 namespace {
 
-/// A second file of the same stem that holds what the first cannot.
+/// A second file of the same stem that holds what the first cannot; without functions the format's own reader and
+/// writer see to it.
 struct Beside {
   const char* extension = nullptr;
   void (*read)(std::string_view bytes, const std::string& path, Mesh& mesh, Context& context) = nullptr;
@@ -62,7 +64,7 @@ const std::vector<Format>& table() {
       {"vtp", "VTK XML surface", {".vtp"}, read_vtp, write_vtp},
 #ifdef DELFRONT_HAS_HDF5
       {"vtkhdf", "VTKHDF unstructured grid", {".vtkhdf", ".hdf"}, nullptr, nullptr, {}, read_vtkhdf, write_vtkhdf},
-      {"xdmf", "XDMF, arrays in .h5", {".xdmf", ".xmf"}, read_xdmf, nullptr, {}, nullptr, write_xdmf},
+      {"xdmf", "XDMF, arrays in .h5", {".xdmf", ".xmf"}, read_xdmf, nullptr, {".h5"}, nullptr, write_xdmf},
 #endif
       {"msh", "Gmsh MSH 2.2 and 4.1 (ASCII and binary)", {".msh"}, read_any_msh, write_msh},
       {"pos", "Gmsh parsed views (ASCII)", {".pos"}, read_pos, nullptr},
@@ -131,6 +133,16 @@ std::string extension_of(const std::string& path) {
 std::string path_beside(const std::string& path, const char* extension) {
   const std::string own = extension_of(path);
   return path.substr(0, path.size() - own.size()) + extension;
+}
+
+/// Those that a path or a name may mean; none where it is unknown.
+std::vector<const Format*> formats_meant(const std::string& path, const std::string& name) {
+  std::vector<const Format*> meant;
+  const std::string own = extension_of(path);
+  for (const Format& known : table())
+    if (name.empty() ? std::count(known.extensions.begin(), known.extensions.end(), own) > 0 : name == known.name)
+      meant.push_back(&known);
+  return meant;
 }
 
 /// ".stl .obj …" of the formats that can be read, or written.
@@ -295,6 +307,9 @@ Mesh read_mesh(const std::string& path, Context& context, const std::string& for
 std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, Context& context,
                                     const WriteOptions& options, const std::string& format) {
   const Format& found = find_format(path, format, true);
+  if (found.beside.extension && path_beside(path, found.beside.extension) == path)
+    throw UsageError(fmt::format("{}: as {} it has a second file beside it, of that very name; give it another ending",
+                                 path, found.title));
   std::vector<std::string> notes;
   if (found.write_file) {
     write_by_library(found, mesh, path, context, options, notes);
@@ -320,6 +335,23 @@ std::vector<std::string> write_mesh(const Mesh& mesh, const std::string& path, C
   replacement_beside.commit();
   replacement.commit();
   return notes;
+}
+
+std::vector<std::string> files_written_as(const std::string& path, const std::string& format) {
+  std::vector<std::string> files = {path};
+  for (const Format* known : formats_meant(path, format))
+    if (can_write(*known) && known->beside.extension) files.push_back(path_beside(path, known->beside.extension));
+  return files;
+}
+
+std::vector<std::string> files_read_as(const std::string& path, const std::string& format) {
+  std::vector<std::string> files = {path};
+  for (const Format* known : formats_meant(path, format)) {
+    if (known->beside.extension) files.push_back(path_beside(path, known->beside.extension));
+    if (known->read != read_medit && known->read != read_meshb) continue;
+    for (const char* extension : {".sol", ".solb"}) files.push_back(path_beside(path, extension));
+  }
+  return files;
 }
 
 void check_writable(const std::string& path) {

@@ -29,7 +29,7 @@ class AbaqusWriter {
         notes_(notes),
         top_(mesh.top_dimension()),
         owners_(mesh, false) {  // the manual's faces look inwards
-    names_ = fit_names(mesh, NameRule::foam_word, "Abaqus", notes, {mesh.dimension - 1, mesh.dimension});
+    names_ = fit_names(mesh, NameRule::any_case, "Abaqus", notes, {mesh.dimension - 1, mesh.dimension});
   }
 
   void write() {

@@ -5,10 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "delfront/errors.hpp"
+#include "io/grid_files.hpp"
 #include "pipeline/geometry_job.hpp"
+#include "pipeline/job_checks.hpp"
 
 namespace delfront {
 
@@ -31,9 +32,7 @@ Mesh convert_file(const std::string& in, const std::string& out, const ConvertOp
                   std::vector<std::string>& changes, Context& context, StarterFiles* starter) {
   check_write_options(options.how);  // before the input is read
   check_starter_solver(options, out);
-  std::error_code ignored;
-  if (std::filesystem::equivalent(in, out, ignored))
-    throw UsageError(fmt::format("{} is the input and would be overwritten; give OUT another name", out));
+  refuse_to_overwrite(in, options.from, files_written_as(out, options.to));
   check_writable(out);
   if (is_smooth_file(in))
     throw UsageError(fmt::format(

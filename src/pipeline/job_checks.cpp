@@ -12,6 +12,7 @@
 #include "delfront/geometry_text.hpp"
 #include "delfront/grid_check.hpp"
 #include "delfront/io.hpp"
+#include "io/grid_files.hpp"
 #include "pipeline/geometry_job.hpp"
 #include "pipeline/option_table.hpp"
 #include "pipeline/quantities.hpp"
@@ -61,7 +62,6 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return !whole_a.empty() && whole_a == whole_b;
 }
 
-/// No file may be written over an input or over another output of the same run.
 /// Whether a path is that of a file of a case, or of a starter file: those of the run itself.
 bool is_of_grid(const Options& options, const std::string& path, const std::string& grid) {
   const std::string& format = format_of(grid, options.output.format, true).name;
@@ -80,21 +80,27 @@ void check_stands_beside(const Options& options, const std::string& path, const 
       throw usage_error(options, key, fmt::format("{} is one of the files of {}; give it another name", path, grid));
 }
 
+/// No file may be written over an input or over another output of the same run.
 void check_files_differ(const Options& options) {
-  std::vector<std::string> taken = options.input.files;
-  if (!options.refine.geometry.empty()) taken.push_back(options.refine.geometry);
-  for (const std::string& job : job_files(options)) taken.push_back(job);
+  std::vector<std::string> inputs = options.input.files, taken;
+  if (!options.refine.geometry.empty()) inputs.push_back(options.refine.geometry);
+  for (std::size_t i = 0, given = inputs.size(); i < given; ++i)
+    for (const std::string& file : files_read_as(inputs[i])) inputs.push_back(file);
+  for (const std::string& job : job_files(options)) inputs.push_back(job);
   const auto add = [&](const std::string& path, const std::string& key) {
     if (path.empty()) return;
-    if (const std::string* other = find_same_file(path, taken))
-      throw usage_error(
-          options, key,
-          fmt::format("{} would be written over {}, a file of the same run; give it another name", path, *other));
+    const std::string* const input = find_same_file(path, inputs);
+    const std::string* const other = input ? input : find_same_file(path, taken);
+    if (other)
+      throw usage_error(options, key,
+                        fmt::format("{} would be written over {}, {} of the same run; give it another name", path,
+                                    *other, input ? "an input" : "a file"));
     taken.push_back(path);
   };
   if (writes_grid(options))
     for (std::size_t i = 0; i < options.output.files.size(); ++i)
-      add(options.output.files[i], fmt::format("output.files[{}]", i));
+      for (const std::string& file : files_written_as(options.output.files[i], options.output.format))
+        add(file, fmt::format("output.files[{}]", i));
   for (const std::string& path : report_files(options.output.report)) add(path, "output.report");
   add(options.output.defects, "output.defects");
   if (writes_grid(options)) check_stands_beside(options, options.output.report, "output.report");
@@ -189,6 +195,16 @@ std::vector<std::string> job_files(const Options& options) {
       if (fs::is_regular_file(name, ignored)) files.insert(name);
   }
   return {files.begin(), files.end()};
+}
+
+void refuse_to_overwrite(const std::string& input, const std::string& input_format,
+                         const std::vector<std::string>& written) {
+  std::error_code ignored;
+  for (const std::string& output : written)
+    for (const std::string& read : files_read_as(input, input_format))
+      if (!read.empty() && fs::equivalent(read, output, ignored))
+        throw UsageError(fmt::format("{} is {} and would be overwritten; give the output another name", output,
+                                     read == input ? "an input" : "a file of the input " + input));
 }
 
 const std::string* find_same_file(const std::string& path, const std::vector<std::string>& others) {

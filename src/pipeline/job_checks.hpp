@@ -24,6 +24,12 @@ void resolve_lengths(Options& options, const LengthScale& scale);
 /// @return the job files that options were read from, by where they were set ("case.toml:12")
 std::vector<std::string> job_files(const Options& options);
 
+/// @brief That nothing written is a file of an input (files_read_as), under whatever name.
+/// @param input  may be empty
+/// @throws UsageError  which would be overwritten
+void refuse_to_overwrite(const std::string& input, const std::string& input_format,
+                         const std::vector<std::string>& written);
+
 /// @return the first of `others` that writing `path` would destroy, or nullptr
 const std::string* find_same_file(const std::string& path, const std::vector<std::string>& others);
 

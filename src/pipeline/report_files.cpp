@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/report_name.hpp"
+#include "io/grid_files.hpp"
 #include "pipeline/job_checks.hpp"
 #include "pipeline/report_json.hpp"
 #include "report/page.hpp"
@@ -19,9 +20,11 @@ std::vector<std::string> report_files(const std::string& report) {
 
 /// What the run reads and what it writes else.
 static std::vector<std::string> other_files(const Options& options) {
-  std::vector<std::string> files = options.input.files;
-  files.insert(files.end(), options.output.files.begin(), options.output.files.end());
-  files.push_back(options.refine.geometry);
+  std::vector<std::string> files;
+  const auto add = [&](const std::vector<std::string>& more) { files.insert(files.end(), more.begin(), more.end()); };
+  for (const std::string& input : options.input.files) add(files_read_as(input));
+  for (const std::string& output : options.output.files) add(files_written_as(output, options.output.format));
+  add(files_read_as(options.refine.geometry));
   const std::vector<std::string> jobs = job_files(options);
   files.insert(files.end(), jobs.begin(), jobs.end());
   std::erase(files, "");

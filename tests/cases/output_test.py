@@ -62,11 +62,40 @@ class FullDisk(case.Case):
         self.addCleanup(subprocess.run, ["umount", disk], check=False)
         self.write("ball.stl", case.stl_binary(case.sphere_triangles(4)))
         self.write("disk/old.vtu", "precious")
-        for out in ("new.vtu", "old.vtu", "foam/"):
+        for out in ("new.vtu", "old.vtu", "foam/", "new.vtkhdf", "new.xdmf", "new.cgns", "new.e", "new.b8.ugrid"):
             with self.subTest(out):
-                self.expect(7, "mesh", "ball.stl", "-o", f"disk/{out}", says=f"disk/{out}".rstrip("/"))
+                self.expect(7, "mesh", "ball.stl", "-o", f"disk/{out}", says=f"disk/{out.rstrip('/').split('.')[0]}")
                 self.assertEqual(os.listdir(disk), ["old.vtu"])
                 self.assertEqual((disk / "old.vtu").read_text(), "precious")
+
+
+class FilesBeside(case.Case):
+    """The .h5 of an XDMF, the .mapbc of a UGRID: never written over what a run reads, or writes else."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("box.stl", case.stl_ascii(case.box_triangles()))
+        self.expect(0, "mesh", "box.stl", "-o", "box.xdmf", "-o", "box.vtkhdf", "-o", "box.mesh")
+        self.before = {file: (self.folder / file).read_bytes() for file in self.files()}
+
+    def check_nothing_changed(self):
+        self.assertEqual({file: (self.folder / file).read_bytes() for file in self.files()}, self.before)
+
+    def test_inputs_are_kept(self):
+        for words in (("refine", "box.xdmf", "-o", "box.xmf"), ("mesh", "box.xdmf", "-o", "box.xmf"),
+                      ("convert", "box.xdmf", "box.h5", "--format", "exodus"), ("convert", "box.xdmf", "box.xmf")):
+            with self.subTest(words):
+                self.expect(2, *words, says="box.h5")
+                self.check_nothing_changed()
+
+    def test_files_of_one_run_differ(self):
+        for words in (("mesh", "box.stl", "-o", "other.xdmf", "--report", "other.h5"),
+                      ("mesh", "box.stl", "-o", "other.ugrid", "--report", "other.mapbc"),
+                      ("mesh", "box.stl", "-o", "other.xdmf", "-o", "other.xmf"),
+                      ("convert", "box.vtkhdf", "other.h5", "--format", "xdmf")):
+            with self.subTest(words):
+                self.expect(2, *words, says="other.")
+                self.check_nothing_changed()
 
 
 class Outputs(case.Case):
