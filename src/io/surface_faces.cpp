@@ -67,6 +67,9 @@ SurfaceFaces::SurfaceFaces(const Mesh& mesh, const char* format, std::vector<std
   note_left_out_fields(mesh, format, notes);
   note_left_out_kinds(mesh, format, notes);
   note_left_out_curves(mesh, format, notes);
+  if (const std::size_t lines = mesh.num_cells(CellType::line); mesh.dimension == 2 && lines > 0)
+    notes.push_back(fmt::format("{}: the boundary, {} lines with their names, is left out; VTU, MSH and SU2 keep it",
+                                format, lines));
   if (volumes == 0) {
     for (std::size_t i = 0; i < mesh.points.size(); ++i) points_.push_back(VertexId(i));
     return;

@@ -38,7 +38,7 @@ constexpr Kind kKinds[] = {
     {"not_finite", Severity::error, "points with a coordinate that is not a number",
      "the file or its writer is at fault"},
     {"no_cells", Severity::error, "grids without a cell", "a grid needs cells of dimension 2 or 3"},
-    {"unchecked_cells", Severity::warning, "polygons or polyhedra, which are not checked", ""},
+    {"unchecked_cells", Severity::warning, "polygons or polyhedra, which are neither checked nor measured", ""},
     {"points_off_plane", Severity::error, "points of a plane grid with z other than 0", "set z = 0"},
     {"repeated_vertex", Severity::error, "cells with the same vertex twice", "drop these cells"},
     {"inverted_cell", Severity::error, "cells that are inside out at a corner",

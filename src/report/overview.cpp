@@ -19,7 +19,9 @@ constexpr Colour kPalette[] = {{.36f, .55f, .85f}, {.93f, .60f, .27f}, {.42f, .6
                                {.35f, .73f, .77f}, {.58f, .62f, .67f}};
 constexpr Colour kNoGroup = {.70f, .72f, .76f}, kCurve = {.13f, .16f, .20f}, kPale = {.93f, .94f, .96f};
 constexpr const char* kFarKinds[] = {"farfield", "inlet", "outlet", "symmetry", "empty", "wedge", "cyclic"};
-constexpr double kSmallBody = 0.5;                ///< of the whole's diagonal: what is smaller is looked at alone
+constexpr double kSmallBody =
+    0.5;  ///< of the whole's diagonal: what is smaller is looked at alone, where far boundaries are known
+constexpr double kTinyBody = 0.05;                ///< the same where they are not: a hole in a plate is no body
 constexpr double kFlat = 1e-6;                    ///< of a diagonal: the thickness of floors and walls of tunnels
 constexpr double kFull = 0.92;                    ///< of the paper, for what is looked at
 constexpr double kAround = 0.68;                  ///< the same where something lies round it
@@ -131,13 +133,14 @@ void Artist::find_sides_of_the_box() {
 /// those sides.
 void Artist::find_body() {
   const bool has_far = std::any_of(mesh_.groups.begin(), mesh_.groups.end(), is_far);
+  const double small = (has_far ? kSmallBody : kTinyBody) * box_.diagonal();
   std::vector<bool> is_body(boundaries_.size(), false);
   Box body;
   bool has_all = true;  // that could be told apart
   for (std::size_t g = 0; g < boundaries_.size(); ++g) {
     const Box& box = boundaries_[g].box;
     if (box.is_empty() || (g < mesh_.groups.size() && is_far(mesh_.groups[GroupId(g)]))) continue;
-    const bool is_small = box.diagonal() < kSmallBody * box_.diagonal();
+    const bool is_small = box.diagonal() < small;
     bool is_inside = true;
     for (int k = 0; k < mesh_.dimension; ++k) is_inside &= box.low[k] > box_.low[k] && box.high[k] < box_.high[k];
     is_body[g] = is_small && (has_far || is_inside);
@@ -148,7 +151,7 @@ void Artist::find_body() {
       has_all &= boundaries_[g].is_on_box;
     }
   }
-  if (body.is_empty() || !has_all || body.diagonal() >= kSmallBody * box_.diagonal()) return;
+  if (body.is_empty() || !has_all || body.diagonal() >= small) return;
   is_cut_open_ = true;
   for (std::size_t g = 0; g < boundaries_.size(); ++g) boundaries_[g].is_body = is_body[g];
 }

@@ -172,6 +172,9 @@ class Outputs(case.Case):
                 said = self.expect(0, "convert", "box.vtu", name).stderr
                 self.assertIn("warning: ", said)
                 self.assertIn("the boundary kind of 1 group is left out (inlet)", case.unbroken(said))
+        self.write("square.poly", "4 2 0 0\n1 0 0\n2 1 0\n3 1 1\n4 0 1\n4 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n0\n")
+        self.expect(0, "mesh", "square.poly", "-o", "square.vtu")
+        self.expect(0, "convert", "square.vtu", "square.stl", says="the boundary, ")
         self.assertEqual(self.expect(0, "convert", "box.vtu", "box.mesh").stderr, "")
         self.expect(0, "info", "box.mesh", says="body (12, inlet)")
 
