@@ -273,7 +273,8 @@ class XdmfReader {
 
   /// "NAME.h5:/path", the file as seen from the XML.
   std::pair<const Hdf5Reader*, Hdf5Reader::Array> hdf5_array(const XmlElement& data) {
-    const std::string text(trimmed(data.text));
+    const std::string_view raw = trimmed(data.text);
+    const std::string text = data.is_cdata ? std::string(raw) : unescape_xml(raw);
     const std::size_t colon = text.rfind(':');
     if (colon == std::string::npos || colon == 0 || colon + 1 == text.size())
       fail(data, fmt::format("'{}' is no array of an HDF5 file (NAME.h5:/array)", text.substr(0, 80)));
