@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "delfront/errors.hpp"
@@ -174,8 +175,11 @@ std::vector<double> Hdf5Reader::reals(const Array& array) const {
 std::vector<std::int64_t> Hdf5Reader::integers(const Array& array) const {
   std::vector<std::int64_t> values;
   if (array.holds == Holds::reals) {
-    for (const double value : reals(array))
-      values.push_back(value > -9e18 && value < 9e18 ? static_cast<std::int64_t>(value) : -1);
+    for (const double value : reals(array)) {
+      if (!(std::abs(value) < 9e18) || value != std::trunc(value))
+        fail(array.path, fmt::format("value {} is {}, and a whole number should stand there", values.size(), value));
+      values.push_back(static_cast<std::int64_t>(value));
+    }
     return values;
   }
   if (array.holds == Holds::text) fail(array.path, "it holds text where whole numbers should stand");

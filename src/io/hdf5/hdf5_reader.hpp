@@ -39,7 +39,7 @@ class Hdf5Reader {
 
   /// @brief All values, row-major. @throws InputError  text, damaged, more than the file holds
   std::vector<double> reals(const Array& array) const;
-  /// @brief Whole numbers; of reals the whole part, -1 where that fits no 64-bit integer.
+  /// @brief Whole numbers, stored as reals or not. @throws InputError  as reals(), or a value is none of 63 bits
   std::vector<std::int64_t> integers(const Array& array) const;
   /// @brief Texts of fixed length, one after the other, `value_size` characters each.
   std::string text(const Array& array) const;

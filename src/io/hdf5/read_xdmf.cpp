@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -89,9 +90,11 @@ class XdmfReader {
     const std::string type = type_of(geometry);
     std::vector<double> values;
     if (type.empty() || is_either(type, "XYZ")) {
+      check_columns(item(geometry), "XYZ", 3);
       values = reals(item(geometry));
       if (values.size() % 3 != 0) fail(geometry, fmt::format("{} numbers are no points in space", values.size()));
     } else if (is_either(type, "XY")) {
+      check_columns(item(geometry), "XY", 2);
       const std::vector<double> flat = reals(item(geometry));
       if (flat.size() % 2 != 0) fail(geometry, fmt::format("{} numbers are no points in the plane", flat.size()));
       for (std::size_t i = 0; i < flat.size(); i += 2) values.insert(values.end(), {flat[i], flat[i + 1], 0.0});
@@ -102,6 +105,19 @@ class XdmfReader {
       fail(geometry, fmt::format("geometry of type '{}' is not read; XYZ and XY are", type.substr(0, 40)));
     }
     grid_.add_points(values, at(geometry));
+  }
+
+  /// Rows of points, where the dimensions say rows.
+  void check_columns(const XmlElement& data, const char* type, double wanted) const {
+    const std::string dimensions = data.get("Dimensions");
+    Cursor text(dimensions, path_);
+    double last = wanted;
+    std::size_t rank = 0;
+    for (std::string_view token = text.next(); !token.empty(); token = text.next(), ++rank)
+      if (!parse_number(token, last)) return;  // said where the values are counted
+    if (rank > 1 && last != wanted)
+      fail(data, fmt::format("points of type {} have {} numbers each, which Dimensions=\"{}\" are not", type, wanted,
+                             dimensions.substr(0, 40)));
   }
 
   std::vector<double> interleaved(const XmlElement& geometry) {
@@ -263,10 +279,9 @@ class XdmfReader {
         continue;
       }
       if (!parse_number(token, value)) fail(data, fmt::format("'{}' is no number", token.substr(0, 40)));
-      if constexpr (std::is_integral_v<T>)
-        values.push_back(value > -9e18 && value < 9e18 ? static_cast<T>(value) : T(-1));
-      else
-        values.push_back(value);
+      if (std::is_integral_v<T> && (!(std::abs(value) < 9e18) || value != std::trunc(value)))
+        fail(data, fmt::format("'{}' is no whole number of 64 bits", token.substr(0, 40)));
+      values.push_back(static_cast<T>(value));
     }
     return values;
   }
