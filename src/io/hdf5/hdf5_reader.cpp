@@ -238,7 +238,9 @@ std::vector<std::int64_t> Hdf5Reader::integer_attribute(const std::string& path,
 std::vector<std::string> Hdf5Reader::names(const std::string& path) const {
   const Hdf5Handle group = open(path);
   std::vector<std::string> found;
-  if (!group.is_valid() || H5Iget_type(group) != H5I_GROUP) return found;
+  if (!group.is_valid() && H5Lexists(file_, path.c_str(), H5P_DEFAULT) <= 0) return found;
+  if (!group.is_valid()) fail(path, "it is not there (links to other files are not followed)");
+  if (H5Iget_type(group) != H5I_GROUP) fail(path, "a group should stand here, and this is none");
   const Hdf5Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned order = 0;
   if (creation.is_valid()) H5Pget_link_creation_order(creation, &order);

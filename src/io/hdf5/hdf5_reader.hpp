@@ -51,7 +51,9 @@ class Hdf5Reader {
   /// @return empty where the object has no such attribute, or none of up to a thousand whole numbers
   std::vector<std::int64_t> integer_attribute(const std::string& path, const std::string& name) const;
 
-  /// @brief Names in a group: in the order of making where the file keeps that, else sorted.
+  /// @brief Names in a group: in the order of making where the file keeps that, else sorted. None where it is not
+  /// there.
+  /// @throws InputError  it stands in another file, or is no group
   std::vector<std::string> names(const std::string& path) const;
 
   [[noreturn]] void fail(const std::string& where, const std::string& message) const;

@@ -36,7 +36,7 @@ class XdmfReader {
       for (const XmlElement& child : domain.children)
         if (child.name == "Grid") read_grid(child);
     }
-    return grid_.finish(is_flat_ ? 2 : 0, false, names_);
+    return grid_.finish(is_flat_ ? 2 : 0, false, names_, context_);
   }
 
  private:
@@ -221,7 +221,8 @@ class XdmfReader {
         if (map.name != "map" || !VtkName::is_label(label)) continue;
         const std::string_view text = trimmed(map.text);
         VtkName name{label, -1, number_of(map, "dim", -1), map.get("kind"), map.get("two_sided") == "1"};
-        std::from_chars(text.data(), text.data() + text.size(), name.id);
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), name.id);
+        if (error != std::errc() || stop != text.data() + text.size()) name.id = -1;  // which is said with the groups
         names_.push_back(name);
       }
     }

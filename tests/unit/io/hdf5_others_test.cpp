@@ -109,6 +109,103 @@ TEST(Hdf5Formats, arrays_of_whole_numbers_hold_no_fractions) {
   expect_mentions(message(types), {"/VTKHDF/Types", "nan", "whole number"});
 }
 
+std::vector<std::string> warnings_of(const std::string& path) {
+  Recorder recorder;
+  read_mesh(path, recorder.context);
+  return recorder.warnings;
+}
+
+TEST(Hdf5Formats, group_numbers_that_cannot_be_used_are_said) {
+  for (const auto& [value, shown] :
+       {std::pair(std::nan(""), "nan"), {0.5, "0.5"}, {-7.0, "-7"}, {3e9, "3000000000"}, {1e300, "1e+300"}}) {
+    Triangle parts;
+    parts.ids = {value};
+    const std::vector<std::string> warnings = warnings_of(write_triangle(parts));
+    ASSERT_EQ(warnings.size(), 1u) << shown;
+    expect_mentions(warnings[0], {"a.vtkhdf", "_id", "1 cells", shown});
+  }
+  Triangle none;
+  none.ids = {-1};
+  EXPECT_TRUE(warnings_of(write_triangle(none)).empty());
+  Triangle two;
+  two.ids = {0, 0};
+  two.also = [](hid_t file) {
+    for (const char* name : {"/VTKHDF/CellData/region_id", "/VTKHDF/CellData/patch_id"}) {
+      H5Ldelete(file, name, H5P_DEFAULT);
+      const hsize_t extents[] = {1, 2};
+      const Hdf5Handle space(H5Screate_simple(2, extents, nullptr), H5Sclose);
+      const Hdf5Handle array(H5Dcreate2(file, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                             H5Dclose);
+      const double values[] = {0, 0};
+      H5Dwrite(array, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+    }
+  };
+  const std::vector<std::string> of_two = warnings_of(write_triangle(two));
+  ASSERT_EQ(of_two.size(), 1u);
+  expect_mentions(of_two[0], {"_id", "2 components"});
+  Triangle text;
+  text.also = [](hid_t file) {
+    for (const char* name : {"/VTKHDF/CellData/region_id", "/VTKHDF/CellData/patch_id"}) {
+      H5Ldelete(file, name, H5P_DEFAULT);
+      const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+      const Hdf5Handle array(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+      H5Dwrite(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, "x");
+    }
+  };
+  const std::vector<std::string> of_text = warnings_of(write_triangle(text));
+  ASSERT_EQ(of_text.size(), 2u);
+  expect_mentions(of_text[0], {"region_id", "text"});
+}
+
+TEST(Hdf5Formats, names_of_groups_that_cannot_be_used_are_said) {
+  for (const std::vector<double>& bad : {std::vector<double>{0, 9}, {-3, 3}, {0.5, 3}, {0}, {std::nan(""), 3}}) {
+    Triangle parts;
+    parts.name = bad;
+    const std::vector<std::string> warnings = warnings_of(write_triangle(parts));
+    ASSERT_EQ(warnings.size(), 1u);
+    expect_mentions(warnings[0], {"a.vtkhdf", "region:air", "left out"});
+  }
+  Triangle twice;
+  twice.also = [](hid_t file) {
+    H5Lcreate_hard(file, "/VTKHDF/FieldData/region:air", file, "/VTKHDF/FieldData/region:water", H5P_DEFAULT,
+                   H5P_DEFAULT);
+  };
+  const std::vector<std::string> warnings = warnings_of(write_triangle(twice));
+  ASSERT_EQ(warnings.size(), 1u);
+  expect_mentions(warnings[0], {"region:air", "region:water", "number 0"});
+  const std::string information =
+      "<Information Name=\"I\"><![CDATA[<main><map key=\"patch:a\" dim=\"2\">99999999999999999999</map></main>]]>"
+      "</Information></Grid>";
+  std::string text = xdmf_of(kThreePoints, "0 1 2");
+  text.replace(text.find("</Grid>"), 7, information);
+  const std::vector<std::string> of_xdmf = warnings_of(write_text("names.xdmf", text));
+  ASSERT_EQ(of_xdmf.size(), 1u);
+  expect_mentions(of_xdmf[0], {"patch:a", "left out"});
+  const std::string vtu =
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><FieldData><DataArray type=\"Int32\" Name=\"patch:a\" "
+      "NumberOfTuples=\"3\" format=\"ascii\">0 2 5</DataArray></FieldData><Piece NumberOfPoints=\"3\" "
+      "NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 "
+      "1 "
+      "0</DataArray></Points><Cells><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray>"
+      "<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray type=\"UInt8\" "
+      "Name=\"types\" format=\"ascii\">5</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+  const std::vector<std::string> of_vtu = warnings_of(write_text("names.vtu", vtu));
+  ASSERT_EQ(of_vtu.size(), 1u);
+  expect_mentions(of_vtu[0], {"patch:a", "left out"});
+}
+
+TEST(Hdf5Formats, groups_and_data_in_another_file_are_refused) {
+  for (const char* name :
+       {"/VTKHDF/CellData/patch_id", "/VTKHDF/FieldData/region:air", "/VTKHDF/CellData", "/VTKHDF/FieldData"}) {
+    Triangle parts;
+    parts.also = [&](hid_t file) {
+      H5Ldelete(file, name, H5P_DEFAULT);
+      H5Lcreate_external("other.h5", "/x", file, name, H5P_DEFAULT, H5P_DEFAULT);
+    };
+    expect_mentions(message_of_reading<InputError>(write_triangle(parts)), {name, "links to other files"});
+  }
+}
+
 }  // namespace
 }  // namespace delfront
 #endif
