@@ -206,6 +206,71 @@ TEST(Hdf5Formats, groups_and_data_in_another_file_are_refused) {
   }
 }
 
+/// two_boxes() as Exodus with some bytes replaced, all of the same length: in every place, or in the first.
+std::string changed_exodus(const std::string& from, const std::string& to, bool everywhere = false) {
+  const fs::path path = scratch_folder("io_exodus_changed") / "a.e";
+  Context context;
+  write_mesh(two_boxes(), path.string(), context);
+  std::string bytes = contents(path);
+  std::size_t at = bytes.find(from), num_changed = 0;
+  for (; at != std::string::npos && (everywhere || num_changed == 0); at = bytes.find(from, at + 1), ++num_changed)
+    bytes.replace(at, to.size(), to);
+  EXPECT_GT(num_changed, 0u);
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path.string();
+}
+
+/// The kind of the patch of that name, "two-sided" behind it; "(none)" where there is no such patch with faces.
+std::string patch_of(const Mesh& mesh, const std::string& name) {
+  const GroupId found = mesh.find_group(2, name);
+  const CellBlock* faces = mesh.find_block(CellType::triangle);
+  if (!found.is_valid() || std::find(faces->group.begin(), faces->group.end(), found) == faces->group.end())
+    return "(none)";
+  return mesh.groups[found].kind + (mesh.groups[found].two_sided ? " two-sided" : "");
+}
+
+TEST(Exodus, the_tables_of_the_file_stand_above_what_the_attribute_notes) {
+  const auto expect_patches = [](const std::string& path, const std::vector<std::pair<std::string, std::string>>& want,
+                                 const std::string& warned) {
+    SCOPED_TRACE(warned);
+    Recorder recorder;
+    const Mesh mesh = read_mesh(path, recorder.context);
+    for (const auto& [name, kind] : want) EXPECT_EQ(patch_of(mesh, name), kind) << name;
+    ASSERT_EQ(recorder.warnings.size(), warned.empty() ? 0u : 1u);
+    if (!warned.empty()) expect_mentions(recorder.warnings[0], {"a.e", "delfront_groups", warned});
+  };
+  const auto set_3 = std::string("#delfront 2 3 2 interface between");
+  expect_patches(changed_exodus("wall left wall", "wall left wall"),
+                 {{"left wall", "wall"}, {"rest", ""}, {"between", "interface two-sided"}}, "");
+  // Renamed in the attribute: what a file is like whose side set another program named.
+  expect_patches(changed_exodus("wall left wall", "wall left wing"),
+                 {{"left wall", ""}, {"rest", ""}, {"between", "interface two-sided"}}, "left wing");
+  expect_patches(changed_exodus(set_3, "#delfront 2 9 2 interface between"),
+                 {{"left wall", "wall"}, {"rest", ""}, {"between", " two-sided"}}, "between");
+  expect_patches(changed_exodus(set_3, "#delfront x 3 2 interface between"),
+                 {{"left wall", "wall"}, {"rest", ""}, {"between", " two-sided"}}, "1 line");
+  expect_patches(changed_exodus("#delfront 3 2", "#delfront 7 2"), {{"left wall", "wall"}, {"rest", ""}}, "1 line");
+  const std::string without_names = changed_exodus("ss_names", "ss_namez");
+  expect_patches(without_names, {{"patch_1", ""}, {"patch_2", ""}, {"patch_3", " two-sided"}}, "left wall");
+  Context context;
+  EXPECT_TRUE(read_mesh(changed_exodus("eb_names", "eb_namez"), context).find_group(3, "region_2").is_valid());
+}
+
+TEST(Exodus, cells_without_a_group_stay_so) {
+  Mesh mesh = two_boxes();
+  for (const CellType type : {CellType::tetrahedron, CellType::triangle})
+    for (std::size_t cell = 0; cell < 2; ++cell) mesh.block(type).group[cell] = GroupId();
+  Context context;
+  const std::string path = (scratch_folder("io_exodus_none") / "a.e").string();
+  write_mesh(mesh, path, context);
+  const Mesh got = read_mesh(path, context);
+  for (const CellType type : {CellType::tetrahedron, CellType::triangle}) {
+    const auto& groups = got.find_block(type)->group;
+    EXPECT_EQ(std::count(groups.begin(), groups.end(), GroupId()), 2);
+  }
+  expect_same_groups(got, mesh, {});
+}
+
 }  // namespace
 }  // namespace delfront
 #endif
