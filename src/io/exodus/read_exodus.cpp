@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include "delfront/errors.hpp"
@@ -83,8 +84,7 @@ class ExodusReader {
       for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(shape[0]); ++k)
         axes.emplace_back(all.begin() + k * n, all.begin() + (k + 1) * n);
     } else {
-      for (const char* name : {"coordx", "coordy", "coordz"})
-        if (file_.has(name)) axes.push_back(file_.reals(name));
+      axes = separate_axes();
     }
     if (axes.empty()) fail("coordx", "there are no coordinates: this is no Exodus file, or it is incomplete");
     for (const std::vector<double>& axis : axes)
@@ -98,6 +98,24 @@ class ExodusReader {
       for (std::size_t k = 0; k < axes.size(); ++k) p[static_cast<int>(k)] = axes[k][i];
       mesh_.points.push_back(p);
     }
+  }
+
+  /// @return none where no axis is there
+  std::vector<std::vector<double>> separate_axes() const {
+    constexpr std::array<const char*, 3> kNames = {"coordx", "coordy", "coordz"};
+    std::size_t num_there = 0;  // up to the last that is there
+    for (std::size_t k = 0; k < kNames.size(); ++k)
+      if (file_.has(kNames[k])) num_there = k + 1;
+    std::vector<std::vector<double>> axes;
+    if (num_there == 0) return axes;
+    const std::uint64_t said = file_.dimension("num_dim");
+    if (said > kNames.size()) fail("num_dim", fmt::format("{} axes cannot be", said));
+    const std::size_t n = said > 0 ? static_cast<std::size_t>(said) : num_there;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!file_.has(kNames[k])) fail(kNames[k], fmt::format("it is missing, and the grid has {} axes", n));
+      axes.push_back(file_.reals(kNames[k]));
+    }
+    return axes;
   }
 
   /// @return 0 where there are none

@@ -271,6 +271,13 @@ TEST(Exodus, cells_without_a_group_stay_so) {
   expect_same_groups(got, mesh, {});
 }
 
+TEST(Exodus, an_axis_that_is_missing_is_named) {
+  for (const char* axis : {"coordx", "coordy", "coordz"}) {
+    const std::string other = std::string(axis).substr(0, 5) + "q";
+    expect_mentions(message_of_reading<InputError>(changed_exodus(axis, other)), {axis, "missing", "3 axes"});
+  }
+}
+
 }  // namespace
 }  // namespace delfront
 #endif
