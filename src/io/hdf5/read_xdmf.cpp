@@ -288,7 +288,7 @@ class XdmfReader {
   }
 
   /// "NAME.h5:/path", the file as seen from the XML.
-  std::pair<const Hdf5Reader*, Hdf5Reader::Array> hdf5_array(const XmlElement& data) {
+  std::pair<std::string, std::string> file_and_array(const XmlElement& data) const {
     const std::string_view raw = trimmed(data.text);
     const std::string text = data.is_cdata ? std::string(raw) : unescape_xml(raw);
     const std::size_t colon = text.rfind(':');
@@ -296,9 +296,23 @@ class XdmfReader {
       fail(data, fmt::format("'{}' is no array of an HDF5 file (NAME.h5:/array)", text.substr(0, 80)));
     std::string name = text.substr(0, colon), array = text.substr(colon + 1);
     if (!array.starts_with('/')) array.insert(array.begin(), '/');
+    return {name, array};
+  }
+
+  std::pair<const Hdf5Reader*, Hdf5Reader::Array> hdf5_array(const XmlElement& data) {
+    const auto [name, array] = file_and_array(data);
     std::unique_ptr<Hdf5Reader>& file = files_[name];
-    if (!file) file = std::make_unique<Hdf5Reader>((std::filesystem::path(path_).parent_path() / name).string());
-    return {file.get(), file->array(array)};
+    try {
+      if (!file) file = std::make_unique<Hdf5Reader>((std::filesystem::path(path_).parent_path() / name).string());
+      return {file.get(), file->array(array)};
+    } catch (const InputError& error) {
+      fail(data, fmt::format("{}; {}", error.what(), both_files(name)));
+    }
+  }
+
+  std::string both_files(const std::string& arrays) const {
+    return fmt::format("{} takes its arrays from {}: both belong together, keep or export them so",
+                       std::filesystem::path(path_).filename().string(), arrays.substr(0, 200));
   }
 
   /// The number of values must be the product of the dimensions, where these are said.
@@ -314,7 +328,9 @@ class XdmfReader {
       product *= extent;
     }
     if (!dimensions.empty() && product != static_cast<double>(values.size()))
-      fail(data, fmt::format("{} values for Dimensions=\"{}\"", values.size(), dimensions.substr(0, 40)));
+      fail(data,
+           fmt::format("{} values for Dimensions=\"{}\"{}", values.size(), dimensions.substr(0, 40),
+                       is_either(data.get("Format"), "HDF") ? "; " + both_files(file_and_array(data).first) : ""));
     return values;
   }
 

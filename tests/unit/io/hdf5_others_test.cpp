@@ -278,6 +278,25 @@ TEST(Exodus, an_axis_that_is_missing_is_named) {
   }
 }
 
+TEST(Xdmf, what_is_wrong_with_its_arrays_names_both_files) {
+  const fs::path folder = scratch_folder("io_xdmf_pair");
+  Context context;
+  write_mesh(two_boxes(), (folder / "a.xdmf").string(), context);
+  write_mesh(mixed_cells(), (folder / "b.xdmf").string(), context);
+  const auto message = [&] { return message_of_reading<InputError>(folder / "a.xdmf"); };
+  fs::copy_file(folder / "b.h5", folder / "a.h5", fs::copy_options::overwrite_existing);
+  expect_mentions(message(), {"a.xdmf", "a.h5", "together"});
+  {
+    const Hdf5Turn turn;
+    Hdf5Writer((folder / "a.h5").string(), "a.h5", false).close();
+  }
+  expect_mentions(message(), {"a.xdmf", "a.h5", "/data0", "together"});
+  std::ofstream(folder / "a.h5", std::ios::trunc) << "no HDF5";
+  expect_mentions(message(), {"a.xdmf", "a.h5", "no HDF5", "together"});
+  fs::remove(folder / "a.h5");
+  expect_mentions(message(), {"a.xdmf", "a.h5", "No such file", "together"});
+}
+
 }  // namespace
 }  // namespace delfront
 #endif
