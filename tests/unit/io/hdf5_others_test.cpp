@@ -297,6 +297,23 @@ TEST(Xdmf, what_is_wrong_with_its_arrays_names_both_files) {
   expect_mentions(message(), {"a.xdmf", "a.h5", "No such file", "together"});
 }
 
+TEST(Hdf5Formats, compressing_makes_small_files_no_larger_and_large_ones_smaller) {
+  Mesh large;
+  for (std::size_t i = 0; i < 6000; ++i) large.points.push_back({double(i / 2), double(i % 2), 0});
+  for (std::size_t i = 0; i + 2 < 6000; ++i)
+    add_cell(large, CellType::triangle, std::array{VertexId(i), VertexId(i + 1), VertexId(i + 2)}, GroupId());
+  const fs::path folder = scratch_folder("io_hdf5_compress");
+  Context context;
+  const auto size = [&](const Mesh& mesh, const std::string& name, bool compress) {
+    write_mesh(mesh, (folder / name).string(), context, {.binary = true, .version = "", .compress = compress});
+    return double(fs::file_size(folder / (name == "a.xdmf" ? "a.h5" : name)));
+  };
+  for (const char* name : {"a.vtkhdf", "a.xdmf"}) {
+    EXPECT_LE(size(two_boxes(), name, true), 1.05 * size(two_boxes(), name, false)) << name;
+    EXPECT_LT(size(large, name, true), 0.5 * size(large, name, false)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace delfront
 #endif
