@@ -196,10 +196,12 @@ void VtkGrid::set_groups(std::span<const VtkName> names, Context& context) {
     const std::vector<std::uint32_t>& source = source_[static_cast<std::size_t>(block.type)];
     for (std::size_t cell = 0; data.components == 1 && cell < source.size(); ++cell) {
       const double id = source[cell] < data.values.size() ? data.values[source[cell]] : -1;
-      if (id >= 0 && id < 2147483648.0 && id == std::trunc(id))
+      if (id >= 0 && id < 2147483648.0 && id == std::trunc(id)) {
         block.group[cell] = groups(d, static_cast<std::int64_t>(id));
-      else if (id != -1 && left_out.count++ == 0)
-        left_out.first = source[cell], left_out.value = id;
+      } else if (id != -1 && left_out.count++ == 0) {
+        left_out.first = source[cell];
+        left_out.value = id;
+      }
     }
   }
   for (int d = 0; d <= 3; ++d) {
