@@ -37,7 +37,7 @@ class VtkReader {
     return grid_.finish(said == "2"   ? 2
                         : said == "3" ? 3
                                       : 0,
-                        is_surface_, names ? names_of(*names) : std::vector<VtkName>());
+                        is_surface_, names ? names_of(*names) : std::vector<VtkName>(), context_);
   }
 
  private:
@@ -142,7 +142,11 @@ class VtkReader {
     if (!parent) return;
     for (const XmlElement& child : parent->children) {
       const std::string name = child.get("Name");
-      if (child.name != "DataArray" || name.empty() || child.get("type") == "String") continue;
+      if (child.name != "DataArray" || name.empty()) continue;
+      if (child.get("type") == "String") {
+        grid_.leave_out_text(on, name, context_);
+        continue;
+      }
       grid_.add_data(on, name, attribute_count(child, "NumberOfComponents"), arrays_.reals(child), at(child));
     }
   }
@@ -152,9 +156,7 @@ class VtkReader {
     for (const XmlElement& child : field_data.children) {
       const std::string label = child.get("Name");
       if (child.name != "DataArray" || !VtkName::is_label(label)) continue;
-      const std::vector<std::int64_t> values = arrays_.integers(child);
-      if (values.size() == 2)
-        names.push_back({label, values[0], values[1], child.get("kind"), child.get("two_sided") == "1"});
+      names.push_back(VtkName::of(label, arrays_.reals(child), child.get("kind"), child.get("two_sided") == "1"));
     }
     return names;
   }

@@ -16,11 +16,22 @@ namespace {
 
 constexpr std::size_t kMaxComponents = 256;  // pieces without an array are filled up: this bounds by how much
 
+/// "region_id" and so on (vtk_names.hpp).
+bool is_id_array(const std::string& name) {
+  return name.ends_with("_id") && is_vtk_role(std::string_view(name).substr(0, name.size() - 3));
+}
+
 }  // namespace
 
 bool VtkName::is_label(const std::string& label) {
   const std::size_t colon = label.find(':');
   return colon != std::string::npos && is_vtk_role(label.substr(0, colon));
+}
+
+VtkName VtkName::of(const std::string& label, std::span<const double> values, const std::string& kind, bool two_sided) {
+  const auto is_whole = [](double value) { return std::abs(value) < 9e18 && value == std::trunc(value); };
+  if (values.size() != 2 || !is_whole(values[0]) || !is_whole(values[1])) return {label, -1, -1, kind, two_sided};
+  return {label, static_cast<std::int64_t>(values[0]), static_cast<std::int64_t>(values[1]), kind, two_sided};
 }
 
 void VtkGrid::add_points(std::span<const double> coordinates, const Fail& fail) {
@@ -121,42 +132,91 @@ void VtkGrid::add_data(Field::On on, const std::string& name, std::size_t compon
   if (!data.values.empty() && data.components != static_cast<int>(components))
     fail("its number of components differs between pieces");
   data.components = static_cast<int>(components);
-  data.values.resize(before * components, std::numeric_limits<double>::quiet_NaN());
+  const bool has_groups = !is_of_points && is_id_array(name);
+  data.values.resize(before * components, has_groups ? -1 : std::numeric_limits<double>::quiet_NaN());
   data.values.insert(data.values.end(), values.begin(), values.end());
 }
 
-Mesh VtkGrid::finish(int dimension, bool is_surface, std::span<const VtkName> names) {
+Mesh VtkGrid::finish(int dimension, bool is_surface, std::span<const VtkName> names, Context& context) {
   if (num_cells_ == 0) throw InputError(fmt::format("{}: the file has no cells", path_));
   check_finite(mesh_, path_);
   if (dimension == 2 || dimension == 3)
     mesh_.dimension = dimension;
   else if (!is_surface)
     guess_dimension(mesh_);
-  set_groups(names);
+  set_groups(names, context);
   set_fields();
   return std::move(mesh_);
 }
 
-void VtkGrid::set_groups(std::span<const VtkName> names) {
-  TagGroups groups(mesh_);
+void VtkGrid::leave_out_text(Field::On on, const std::string& name, Context& context) const {
+  if (on == Field::On::cells && is_id_array(name))
+    context.warn(
+        fmt::format("{}: the cell array {} holds text, not the numbers of groups: it is left out", path_, name));
+}
+
+void VtkGrid::name_groups(TagGroups& groups, std::span<const VtkName> names, Context& context) {
+  std::map<std::pair<int, std::int64_t>, const std::string*> taken;
   for (const VtkName& name : names) {
-    if (!VtkName::is_label(name.label) || name.id < 0 || name.dimension < 0 || name.dimension > 3) continue;
+    if (!VtkName::is_label(name.label)) continue;
+    if (name.id < 0 || name.dimension < 0 || name.dimension > 3) {
+      context.warn(fmt::format("{}: the name \"{}\" is left out: it needs a number from 0 and a dimension from 0 to 3",
+                               path_, name.label));
+      continue;
+    }
     const int d = static_cast<int>(name.dimension);
+    const auto [first, is_new] = taken.try_emplace({d, name.id}, &name.label);
+    if (!is_new) {
+      if (*first->second != name.label)
+        context.warn(fmt::format("{}: \"{}\" and \"{}\" have the same number {}: the second name is left out", path_,
+                                 *first->second, name.label, name.id));
+      continue;
+    }
     groups.name(d, name.id, name.label.substr(name.label.find(':') + 1), name.kind);
     mesh_.groups[groups(d, name.id)].two_sided = name.two_sided;
   }
+}
+
+void VtkGrid::set_groups(std::span<const VtkName> names, Context& context) {
+  struct Unusable {
+    std::size_t count = 0, components = 1;
+    std::uint32_t first = 0;  // cell of the file
+    double value = 0;
+  };
+  TagGroups groups(mesh_);
+  name_groups(groups, names, context);
+  std::array<Unusable, 4> unusable;
   for (CellBlock& block : mesh_.blocks) {
     const int d = dimension(block.type);
     const auto found = cell_data_.find(vtk_id_array(mesh_, d));
-    if (found == cell_data_.end() || found->second.components != 1) continue;
+    if (found == cell_data_.end()) continue;
+    const Data& data = found->second;
+    Unusable& left_out = unusable[static_cast<std::size_t>(d)];
+    left_out.components = static_cast<std::size_t>(data.components);
     const std::vector<std::uint32_t>& source = source_[static_cast<std::size_t>(block.type)];
-    for (std::size_t cell = 0; cell < source.size(); ++cell) {
-      if (source[cell] >= found->second.values.size()) continue;
-      const double id = found->second.values[source[cell]];
-      if (id >= 0 && id < 2147483648.0) block.group[cell] = groups(d, static_cast<std::int64_t>(id));
+    for (std::size_t cell = 0; data.components == 1 && cell < source.size(); ++cell) {
+      const double id = source[cell] < data.values.size() ? data.values[source[cell]] : -1;
+      if (id >= 0 && id < 2147483648.0 && id == std::trunc(id)) {
+        block.group[cell] = groups(d, static_cast<std::int64_t>(id));
+      } else if (id != -1 && left_out.count++ == 0) {
+        left_out.first = source[cell];
+        left_out.value = id;
+      }
     }
   }
-  for (int d = 0; d <= 3; ++d) cell_data_.erase(vtk_id_array(mesh_, d));
+  for (int d = 0; d <= 3; ++d) {
+    const Unusable& left_out = unusable[static_cast<std::size_t>(d)];
+    const std::string array = vtk_id_array(mesh_, d);
+    if (left_out.components != 1)
+      context.warn(fmt::format("{}: the cell array {} has {} components, not one number: it is left out", path_, array,
+                               left_out.components));
+    if (left_out.count > 0)
+      context.warn(
+          fmt::format("{}: {} cells have no number of a group in {} (the first is cell {} with {}): they are in "
+                      "no group",
+                      path_, left_out.count, array, left_out.first, left_out.value));
+    cell_data_.erase(array);
+  }
 }
 
 void VtkGrid::set_fields() {

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "delfront/context.hpp"
 #include "delfront/mesh.hpp"
 
 namespace delfront {
+
+class TagGroups;
 
 /// @brief What a file says of one group: "patch:wing" = id, dimension, kind, two-sided (vtk_names.hpp).
 struct VtkName {
@@ -21,6 +24,8 @@ struct VtkName {
 
   /// @return true for "patch:…", "region:…" and so on
   static bool is_label(const std::string& label);
+  /// @brief Of what an array holds; number and dimension -1 where that is not two whole numbers.
+  static VtkName of(const std::string& label, std::span<const double> values, const std::string& kind, bool two_sided);
 };
 
 /// @brief Makes a Mesh of points, cells and data as VTK has them; its files (VTU, VTP, VTKHDF) and XDMF differ in how
@@ -51,8 +56,12 @@ class VtkGrid {
 
   /// @brief The whole: groups by id arrays and names, fields.
   /// @param dimension  2 or 3 where the file says it, 0: found from the points (3 for surfaces)
+  /// @param context  told which names and numbers of groups cannot be used
   /// @throws InputError  no cells, coordinates that are not finite
-  Mesh finish(int dimension, bool is_surface, std::span<const VtkName> names);
+  Mesh finish(int dimension, bool is_surface, std::span<const VtkName> names, Context& context);
+
+  /// @brief An array of text is no field; it is said where it should hold the numbers of groups.
+  void leave_out_text(Field::On on, const std::string& name, Context& context) const;
 
  private:
   struct Data {
@@ -64,7 +73,8 @@ class VtkGrid {
   void add(CellType type, std::span<const VertexId> vertices);
   void add_polygon(const Fail& fail);
   void add_plain_cell(std::int64_t number, const Fail& fail);
-  void set_groups(std::span<const VtkName> names);
+  void name_groups(TagGroups& groups, std::span<const VtkName> names, Context& context);
+  void set_groups(std::span<const VtkName> names, Context& context);
   void set_fields();
   void set_cell_field(const std::string& name, const Data& data, CellType type);
 

@@ -37,18 +37,20 @@ void append_utf8(std::string& out, std::uint32_t code) {
   }
 }
 
-/// Resolves &lt; &#65; &#x41; and so on; what is no entity stays as it is.
-std::string unescape(std::string_view text) {
+}  // namespace
+
+std::string unescape_xml(std::string_view text) {
+  constexpr std::size_t kLongest = 11;  // characters of an entity
   static constexpr std::pair<std::string_view, char> kEntities[] = {
       {"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"quot", '"'}, {"apos", '\''}};
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::size_t end = text[i] == '&' ? text.find(';', i) : std::string_view::npos;
-    if (end == std::string_view::npos || end > i + 10) {
+    const std::size_t length = text[i] == '&' ? text.substr(i, kLongest).find(';') : std::string_view::npos;
+    if (length == std::string_view::npos) {
       out += text[i];
       continue;
     }
-    std::string_view entity = text.substr(i + 1, end - i - 1);
+    std::string_view entity = text.substr(i + 1, length - 1);
     const auto known = std::find_if(std::begin(kEntities), std::end(kEntities),
                                     [&](const auto& pair) { return pair.first == entity; });
     std::uint32_t code = 0;
@@ -64,10 +66,12 @@ std::string unescape(std::string_view text) {
       continue;
     }
     append_utf8(out, code);
-    i = end;
+    i += length;
   }
   return out;
 }
+
+namespace {
 
 class XmlParser {
  public:
@@ -140,7 +144,7 @@ class XmlParser {
       const char quote = bytes_[at_++];
       const std::size_t end = bytes_.find(quote, at_);
       if (end == std::string_view::npos) fail("the file ends inside an attribute; it is truncated");
-      element.attributes.emplace_back(attribute, unescape(bytes_.substr(at_, end - at_)));
+      element.attributes.emplace_back(attribute, unescape_xml(bytes_.substr(at_, end - at_)));
       at_ = end + 1;
     }
   }
@@ -175,6 +179,7 @@ class XmlParser {
     const std::size_t begin = at_;
     skip_past(kCdataEnd);
     element.text = bytes_.substr(begin, at_ - kCdataEnd.size() - begin);
+    element.is_cdata = true;
   }
 
   void take_appended(XmlElement& element) {
@@ -225,6 +230,11 @@ std::string escape_xml(std::string_view text) {
         break;
       case '"':
         out += "&quot;";
+        break;
+      case '\t':
+      case '\n':
+      case '\r':
+        out += fmt::format("&#{};", static_cast<int>(c));
         break;
       default:
         out += c;

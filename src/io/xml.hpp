@@ -13,7 +13,8 @@ struct XmlElement {
   std::string_view name;
   std::vector<std::pair<std::string_view, std::string>> attributes;  ///< values with entities resolved
   std::vector<XmlElement> children;
-  std::string_view text;  ///< between the tags, up to the first child; or what a CDATA section there holds
+  std::string_view text;  ///< as it stands between the tags, up to the first child; or what a CDATA section there holds
+  bool is_cdata = false;  ///< `text` has no entities
 
   /// @return the attribute's value, or nullptr
   const std::string* find(std::string_view attribute) const;
@@ -29,7 +30,10 @@ struct XmlElement {
 /// @throws InputError  not well formed (line), nested over 64 deep
 XmlElement parse_xml(std::string_view bytes, const std::string& path);
 
-/// @brief &, <, >, " and control characters of an attribute's value as entities.
+/// @brief &, <, >, ", tabs and ends of lines as entities, for text and for values of attributes.
 std::string escape_xml(std::string_view text);
+
+/// @brief Resolves &lt; &#65; &#x41; and so on; what is no entity stays as it is.
+std::string unescape_xml(std::string_view text);
 
 }  // namespace delfront

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exodus II: element blocks are regions, or patches where their elements are faces of a grid in space; side sets are
-// patches. Names as write_exodus noted them, else those of blocks and sets, else by their ids.
+// patches, named by their own names, else by their ids. What write_exodus noted says the kind where id and name agree.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include "delfront/errors.hpp"
@@ -23,6 +24,7 @@ namespace delfront {
 namespace {
 
 constexpr std::uint64_t kMostParts = 1000000;  // blocks or sets
+constexpr std::size_t kLongestName = 255;      // characters that write_exodus keeps of a name
 
 class ExodusReader {
  public:
@@ -37,7 +39,8 @@ class ExodusReader {
     check_finite(mesh_, path_);
     if (!is_flat_) guess_dimension(mesh_);
     read_side_sets();
-    if (table_.empty()) mark_inner_groups(mesh_);
+    set_sides();
+    warn_of_table();
     return std::move(mesh_);
   }
 
@@ -45,6 +48,11 @@ class ExodusReader {
   struct ElementPlace {
     CellType type = CellType::vertex;
     std::uint32_t cell = 0;
+  };
+
+  struct Noted {
+    NamedNumber line;
+    bool is_used = false;
   };
 
   [[noreturn]] void fail(const std::string& where, const std::string& message) const {
@@ -58,8 +66,11 @@ class ExodusReader {
       std::string_view line = text.rest_of_line();
       NamedNumber found;
       constexpr std::string_view kMark = "#delfront ";
+      has_table_ = true;
       if (line.starts_with(kMark) && parse_name_line(line.substr(kMark.size()), found))
-        table_[{found.dimension, found.number}] = found;
+        table_[{found.dimension, found.number}] = {found, false};
+      else if (!trimmed(line).empty())
+        ++num_damaged_;
     }
   }
 
@@ -73,8 +84,7 @@ class ExodusReader {
       for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(shape[0]); ++k)
         axes.emplace_back(all.begin() + k * n, all.begin() + (k + 1) * n);
     } else {
-      for (const char* name : {"coordx", "coordy", "coordz"})
-        if (file_.has(name)) axes.push_back(file_.reals(name));
+      axes = separate_axes();
     }
     if (axes.empty()) fail("coordx", "there are no coordinates: this is no Exodus file, or it is incomplete");
     for (const std::vector<double>& axis : axes)
@@ -88,6 +98,24 @@ class ExodusReader {
       for (std::size_t k = 0; k < axes.size(); ++k) p[static_cast<int>(k)] = axes[k][i];
       mesh_.points.push_back(p);
     }
+  }
+
+  /// @return none where no axis is there
+  std::vector<std::vector<double>> separate_axes() const {
+    constexpr std::array<const char*, 3> kNames = {"coordx", "coordy", "coordz"};
+    std::size_t num_there = 0;  // up to the last that is there
+    for (std::size_t k = 0; k < kNames.size(); ++k)
+      if (file_.has(kNames[k])) num_there = k + 1;
+    std::vector<std::vector<double>> axes;
+    if (num_there == 0) return axes;
+    const std::uint64_t said = file_.dimension("num_dim");
+    if (said > kNames.size()) fail("num_dim", fmt::format("{} axes cannot be", said));
+    const std::size_t n = said > 0 ? static_cast<std::size_t>(said) : num_there;
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!file_.has(kNames[k])) fail(kNames[k], fmt::format("it is missing, and the grid has {} axes", n));
+      axes.push_back(file_.reals(kNames[k]));
+    }
+    return axes;
   }
 
   /// @return 0 where there are none
@@ -139,15 +167,59 @@ class ExodusReader {
          fmt::format("elements '{}' with {} nodes are not read; linear ones are", said.substr(0, 40), num_corners));
   }
 
-  GroupId group(int d, std::int64_t id, const std::string& name) {
-    if (!table_.empty()) {
-      const auto noted = table_.find({d, id});
-      if (noted == table_.end()) return GroupId();
-      const GroupId found = mesh_.add_group(d, noted->second.name, noted->second.kind);
-      mesh_.groups[found].two_sided = noted->second.two_sided;
-      return found;
+  /// @param may_be  names that write_exodus gave to what it noted
+  GroupId group(int d, std::int64_t id, const std::string& name, const std::vector<std::string>& may_be) {
+    const auto noted = table_.find({d, id});
+    const bool is_noted =
+        noted != table_.end() && !name.empty() && std::any_of(may_be.begin(), may_be.end(), [&](const auto& candidate) {
+          const std::string& full = noted->second.line.name;
+          return candidate == full || (candidate.size() >= kLongestName && full.starts_with(candidate));
+        });
+    if (!is_noted) {
+      is_all_noted_ = false;
+      return mesh_.add_group(d, name.empty() ? fmt::format("{}_{}", role_name(mesh_, d), id) : name);
     }
-    return mesh_.add_group(d, name.empty() ? fmt::format("{}_{}", role_name(mesh_, d), id) : name);
+    noted->second.is_used = true;
+    const GroupId found = mesh_.add_group(d, noted->second.line.name, noted->second.line.kind);
+    noted_sides_.emplace_back(found, noted->second.line.two_sided);
+    return found;
+  }
+
+  /// The blocks of one region are called "air", "air_prism", …; those of none "cells_prism" or "faces_quad"; with "_2"
+  /// and so on behind it where that was taken.
+  GroupId group_of_block(CellType type, std::int64_t id, const std::string& name) {
+    std::vector<std::string> may_be = {name};
+    if (const std::size_t end = name.find_last_not_of("0123456789"); end + 1 < name.size() && name[end] == '_')
+      may_be.push_back(name.substr(0, end));
+    const std::string suffix = fmt::format("_{}", name_of(type));
+    for (std::size_t i = may_be.size(); i-- > 0;) {
+      if (!may_be[i].ends_with(suffix)) continue;
+      may_be.push_back(may_be[i].substr(0, may_be[i].size() - suffix.size()));
+      const bool is_of_none = may_be.back() == "cells" || may_be.back() == "faces";
+      if (has_table_ && is_of_none && !table_.contains({dimension(type), id})) return GroupId();
+    }
+    return group(dimension(type), id, name, may_be);
+  }
+
+  /// What the table does not say of patches, the cells do.
+  void set_sides() {
+    if (!is_all_noted_) mark_inner_groups(mesh_);
+    for (const auto& [group, two_sided] : noted_sides_) mesh_.groups[group].two_sided = two_sided;
+  }
+
+  void warn_of_table() const {
+    if (num_damaged_ > 0)
+      context_.warn(fmt::format("{}: {} line{} of the attribute {} cannot be read: the kinds they note are left out",
+                                path_, num_damaged_, num_damaged_ == 1 ? "" : "s", kExodusGroups));
+    const NamedNumber* first = nullptr;
+    std::size_t num_unused = 0;
+    for (const auto& [key, noted] : table_)
+      if (!noted.is_used && num_unused++ == 0) first = &noted.line;
+    if (first)
+      context_.warn(
+          fmt::format("{}: the attribute {} notes {} groups (the first: \"{}\") that no block or side set has by that "
+                      "id and name: their kinds are left out",
+                      path_, kExodusGroups, num_unused, first->name));
   }
 
   void read_blocks() {
@@ -163,7 +235,7 @@ class ExodusReader {
         fail(variable, "elements with any number of nodes (polyhedra, polygons) are not read; save linear cells");
       const CellType type = type_of(variable, file_.attribute(variable, "elem_type"), shape[1]);
       const std::vector<std::int64_t> corners = file_.integers(variable);
-      add_block(variable, type, corners, group(dimension(type), block_ids[i], block_names[i]));
+      add_block(variable, type, corners, group_of_block(type, block_ids[i], block_names[i]));
     }
   }
 
@@ -191,7 +263,8 @@ class ExodusReader {
     if (n > 0) note_stored_faces();
     for (std::size_t i = 0; i < n; ++i) {
       context_.check_limits();
-      const GroupId set = group(top_ - 1, set_ids[i], set_names[i]);
+      const bool has_none = has_table_ && set_names[i] == kExodusNoPatch;
+      const GroupId set = has_none ? GroupId() : group(top_ - 1, set_ids[i], set_names[i], {set_names[i]});
       const std::string elements = fmt::format("elem_ss{}", i + 1), sides = fmt::format("side_ss{}", i + 1);
       if (!file_.has(elements) || !file_.has(sides)) continue;  // an empty set
       add_set(elements, file_.integers(elements), file_.integers(sides), set);
@@ -261,7 +334,11 @@ class ExodusReader {
   Mesh mesh_;
   bool is_flat_ = false;
   int top_ = 3;
-  std::map<std::pair<int, std::int64_t>, NamedNumber> table_;
+  bool has_table_ = false;
+  std::map<std::pair<int, std::int64_t>, Noted> table_;
+  std::size_t num_damaged_ = 0;                        // lines of the table
+  std::vector<std::pair<GroupId, bool>> noted_sides_;  // two-sided or not, as the table has it
+  bool is_all_noted_ = true;
   std::vector<ElementPlace> elements_;  // by their number - 1
   std::unordered_map<FacetKey, ElementPlace, FacetKeyHash> stored_;
   std::vector<std::uint32_t> given_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "delfront/errors.hpp"
@@ -174,8 +175,11 @@ std::vector<double> Hdf5Reader::reals(const Array& array) const {
 std::vector<std::int64_t> Hdf5Reader::integers(const Array& array) const {
   std::vector<std::int64_t> values;
   if (array.holds == Holds::reals) {
-    for (const double value : reals(array))
-      values.push_back(value > -9e18 && value < 9e18 ? static_cast<std::int64_t>(value) : -1);
+    for (const double value : reals(array)) {
+      if (!(std::abs(value) < 9e18) || value != std::trunc(value))
+        fail(array.path, fmt::format("value {} is {}, and a whole number should stand there", values.size(), value));
+      values.push_back(static_cast<std::int64_t>(value));
+    }
     return values;
   }
   if (array.holds == Holds::text) fail(array.path, "it holds text where whole numbers should stand");
@@ -234,7 +238,9 @@ std::vector<std::int64_t> Hdf5Reader::integer_attribute(const std::string& path,
 std::vector<std::string> Hdf5Reader::names(const std::string& path) const {
   const Hdf5Handle group = open(path);
   std::vector<std::string> found;
-  if (!group.is_valid() || H5Iget_type(group) != H5I_GROUP) return found;
+  if (!group.is_valid() && H5Lexists(file_, path.c_str(), H5P_DEFAULT) <= 0) return found;
+  if (!group.is_valid()) fail(path, "it is not there (links to other files are not followed)");
+  if (H5Iget_type(group) != H5I_GROUP) fail(path, "a group should stand here, and this is none");
   const Hdf5Handle creation(H5Gget_create_plist(group), H5Pclose);
   unsigned order = 0;
   if (creation.is_valid()) H5Pget_link_creation_order(creation, &order);

@@ -39,7 +39,7 @@ class Hdf5Reader {
 
   /// @brief All values, row-major. @throws InputError  text, damaged, more than the file holds
   std::vector<double> reals(const Array& array) const;
-  /// @brief Whole numbers; of reals the whole part, -1 where that fits no 64-bit integer.
+  /// @brief Whole numbers, stored as reals or not. @throws InputError  as reals(), or a value is none of 63 bits
   std::vector<std::int64_t> integers(const Array& array) const;
   /// @brief Texts of fixed length, one after the other, `value_size` characters each.
   std::string text(const Array& array) const;
@@ -51,7 +51,9 @@ class Hdf5Reader {
   /// @return empty where the object has no such attribute, or none of up to a thousand whole numbers
   std::vector<std::int64_t> integer_attribute(const std::string& path, const std::string& name) const;
 
-  /// @brief Names in a group: in the order of making where the file keeps that, else sorted.
+  /// @brief Names in a group: in the order of making where the file keeps that, else sorted. None where it is not
+  /// there.
+  /// @throws InputError  it stands in another file, or is no group
   std::vector<std::string> names(const std::string& path) const;
 
   [[noreturn]] void fail(const std::string& where, const std::string& message) const;

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 16;  // values
 constexpr unsigned kDeflate = 6;
+constexpr std::size_t kLeastCompressed = 8192;  // bytes: the index of an array's chunks takes 2000 to 3000
 
 void keep_order(hid_t creation) {
   H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
@@ -56,7 +57,7 @@ Hdf5Handle Hdf5Writer::make_array(const std::string& path, hid_t type, std::size
   const int rank = columns > 0 ? 2 : 1;
   const Hdf5Handle creation = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   check(H5Pset_obj_track_times(creation, false));
-  if (compress_ && total > 0) {
+  if (compress_ && total * H5Tget_size(type) >= kLeastCompressed) {
     const hsize_t rows = std::max<hsize_t>(kChunk / std::max<std::size_t>(columns, 1), 1);
     const std::array<hsize_t, 2> chunk = {std::min(extents[0], rows), columns};
     check(H5Pset_chunk(creation, rank, chunk.data()));

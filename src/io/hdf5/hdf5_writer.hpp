@@ -14,7 +14,7 @@ namespace delfront {
 /// Objects are named by their path; groups above them must be there. Hold a Hdf5Turn as long as one of these is there.
 class Hdf5Writer {
  public:
-  /// @param compress  arrays in chunks, shuffled and deflated
+  /// @param compress  arrays of 8 KiB or more in chunks, shuffled and deflated
   /// @throws IoError  cannot be created, naming `shown_path`
   Hdf5Writer(const std::string& path, std::string shown_path, bool compress);
   ~Hdf5Writer();

@@ -34,7 +34,7 @@ class VtkHdfReader {
       add_part(num_points[part], num_cells[part], num_corners[part]);
     }
     const std::vector<std::int64_t> dimension = file_.integer_attribute(kRoot, "dimension");
-    return grid_.finish(dimension.size() == 1 ? static_cast<int>(dimension[0]) : 0, false, names());
+    return grid_.finish(dimension.size() == 1 ? static_cast<int>(dimension[0]) : 0, false, names(), context_);
   }
 
  private:
@@ -85,13 +85,16 @@ class VtkHdfReader {
       const std::string folder = kRoot + "/" + group;
       for (const std::string& name : file_.names(folder)) {
         const std::string path = folder + "/" + name;
-        const auto array = file_.find_array(path);
-        if (!array || array->holds == Hdf5Reader::Holds::text) continue;
+        const Hdf5Reader::Array array = file_.array(path);
+        if (array.holds == Hdf5Reader::Holds::text) {
+          grid_.leave_out_text(on, name, context_);
+          continue;
+        }
         context_.check_limits();
-        const std::size_t rows = array->shape.empty() ? 1 : array->shape[0];
-        const std::size_t components = rows > 0 ? array->count / rows : 1;
+        const std::size_t rows = array.shape.empty() ? 1 : array.shape[0];
+        const std::size_t components = rows > 0 ? array.count / rows : 1;
         if (components > kMaxComponents) file_.fail(path, fmt::format("{} components are not supported", components));
-        data_.push_back({on, name, path, components, file_.reals(*array)});
+        data_.push_back({on, name, path, components, file_.reals(array)});
       }
     }
   }
@@ -136,10 +139,11 @@ class VtkHdfReader {
     for (const std::string& label : file_.names(folder)) {
       if (!VtkName::is_label(label)) continue;
       const std::string path = folder + "/" + label;
-      const std::vector<std::int64_t> values = file_.integers(path);
-      if (values.size() != 2) continue;
-      found.push_back({label, values[0], values[1], file_.text_attribute(path, "kind"),
-                       !file_.integer_attribute(path, "two_sided").empty()});
+      const Hdf5Reader::Array array = file_.array(path);
+      const bool is_read = array.holds != Hdf5Reader::Holds::text && array.count == 2;
+      found.push_back(VtkName::of(label, is_read ? file_.reals(array) : std::vector<double>(),
+                                  file_.text_attribute(path, "kind"),
+                                  !file_.integer_attribute(path, "two_sided").empty()));
     }
     return found;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -35,7 +36,7 @@ class XdmfReader {
       for (const XmlElement& child : domain.children)
         if (child.name == "Grid") read_grid(child);
     }
-    return grid_.finish(is_flat_ ? 2 : 0, false, names_);
+    return grid_.finish(is_flat_ ? 2 : 0, false, names_, context_);
   }
 
  private:
@@ -89,9 +90,11 @@ class XdmfReader {
     const std::string type = type_of(geometry);
     std::vector<double> values;
     if (type.empty() || is_either(type, "XYZ")) {
+      check_columns(item(geometry), "XYZ", 3);
       values = reals(item(geometry));
       if (values.size() % 3 != 0) fail(geometry, fmt::format("{} numbers are no points in space", values.size()));
     } else if (is_either(type, "XY")) {
+      check_columns(item(geometry), "XY", 2);
       const std::vector<double> flat = reals(item(geometry));
       if (flat.size() % 2 != 0) fail(geometry, fmt::format("{} numbers are no points in the plane", flat.size()));
       for (std::size_t i = 0; i < flat.size(); i += 2) values.insert(values.end(), {flat[i], flat[i + 1], 0.0});
@@ -102,6 +105,19 @@ class XdmfReader {
       fail(geometry, fmt::format("geometry of type '{}' is not read; XYZ and XY are", type.substr(0, 40)));
     }
     grid_.add_points(values, at(geometry));
+  }
+
+  /// Rows of points, where the dimensions say rows.
+  void check_columns(const XmlElement& data, const char* type, double wanted) const {
+    const std::string dimensions = data.get("Dimensions");
+    Cursor text(dimensions, path_);
+    double last = wanted;
+    std::size_t rank = 0;
+    for (std::string_view token = text.next(); !token.empty(); token = text.next(), ++rank)
+      if (!parse_number(token, last)) return;  // said where the values are counted
+    if (rank > 1 && last != wanted)
+      fail(data, fmt::format("points of type {} have {} numbers each, which Dimensions=\"{}\" are not", type, wanted,
+                             dimensions.substr(0, 40)));
   }
 
   std::vector<double> interleaved(const XmlElement& geometry) {
@@ -205,7 +221,8 @@ class XdmfReader {
         if (map.name != "map" || !VtkName::is_label(label)) continue;
         const std::string_view text = trimmed(map.text);
         VtkName name{label, -1, number_of(map, "dim", -1), map.get("kind"), map.get("two_sided") == "1"};
-        std::from_chars(text.data(), text.data() + text.size(), name.id);
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), name.id);
+        if (error != std::errc() || stop != text.data() + text.size()) name.id = -1;  // which is said with the groups
         names_.push_back(name);
       }
     }
@@ -263,25 +280,39 @@ class XdmfReader {
         continue;
       }
       if (!parse_number(token, value)) fail(data, fmt::format("'{}' is no number", token.substr(0, 40)));
-      if constexpr (std::is_integral_v<T>)
-        values.push_back(value > -9e18 && value < 9e18 ? static_cast<T>(value) : T(-1));
-      else
-        values.push_back(value);
+      if (std::is_integral_v<T> && (!(std::abs(value) < 9e18) || value != std::trunc(value)))
+        fail(data, fmt::format("'{}' is no whole number of 64 bits", token.substr(0, 40)));
+      values.push_back(static_cast<T>(value));
     }
     return values;
   }
 
   /// "NAME.h5:/path", the file as seen from the XML.
-  std::pair<const Hdf5Reader*, Hdf5Reader::Array> hdf5_array(const XmlElement& data) {
-    const std::string text(trimmed(data.text));
+  std::pair<std::string, std::string> file_and_array(const XmlElement& data) const {
+    const std::string_view raw = trimmed(data.text);
+    const std::string text = data.is_cdata ? std::string(raw) : unescape_xml(raw);
     const std::size_t colon = text.rfind(':');
     if (colon == std::string::npos || colon == 0 || colon + 1 == text.size())
       fail(data, fmt::format("'{}' is no array of an HDF5 file (NAME.h5:/array)", text.substr(0, 80)));
     std::string name = text.substr(0, colon), array = text.substr(colon + 1);
     if (!array.starts_with('/')) array.insert(array.begin(), '/');
+    return {name, array};
+  }
+
+  std::pair<const Hdf5Reader*, Hdf5Reader::Array> hdf5_array(const XmlElement& data) {
+    const auto [name, array] = file_and_array(data);
     std::unique_ptr<Hdf5Reader>& file = files_[name];
-    if (!file) file = std::make_unique<Hdf5Reader>((std::filesystem::path(path_).parent_path() / name).string());
-    return {file.get(), file->array(array)};
+    try {
+      if (!file) file = std::make_unique<Hdf5Reader>((std::filesystem::path(path_).parent_path() / name).string());
+      return {file.get(), file->array(array)};
+    } catch (const InputError& error) {
+      fail(data, fmt::format("{}; {}", error.what(), both_files(name)));
+    }
+  }
+
+  std::string both_files(const std::string& arrays) const {
+    return fmt::format("{} takes its arrays from {}: both belong together, keep or export them so",
+                       std::filesystem::path(path_).filename().string(), arrays.substr(0, 200));
   }
 
   /// The number of values must be the product of the dimensions, where these are said.
@@ -297,7 +328,9 @@ class XdmfReader {
       product *= extent;
     }
     if (!dimensions.empty() && product != static_cast<double>(values.size()))
-      fail(data, fmt::format("{} values for Dimensions=\"{}\"", values.size(), dimensions.substr(0, 40)));
+      fail(data,
+           fmt::format("{} values for Dimensions=\"{}\"{}", values.size(), dimensions.substr(0, 40),
+                       is_either(data.get("Format"), "HDF") ? "; " + both_files(file_and_array(data).first) : ""));
     return values;
   }
 

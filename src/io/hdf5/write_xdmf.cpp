@@ -25,6 +25,12 @@ const XdmfType& xdmf_type(CellType type) {
   return *std::find_if(kXdmfTypes.begin(), kXdmfTypes.end(), [&](const XdmfType& t) { return t.vtk_number == wanted; });
 }
 
+/// How the XML names a file beside it. Readers cut blanks off both ends of what an element holds: "./" stands before
+/// one.
+std::string reference_to(const std::string& name) {
+  return (static_cast<unsigned char>(name.front()) <= ' ' ? "./" : "") + name;
+}
+
 class XdmfWriter {
  public:
   XdmfWriter(const Mesh& mesh, Output& out, Hdf5Writer& arrays, std::string arrays_name, Context& context,
@@ -164,7 +170,7 @@ void write_xdmf(const Mesh& mesh, const std::string& path, const std::string& sh
   const Hdf5Turn turn;
   Hdf5Writer arrays(replacement.temporary(), beside.string(), options.compress);
   Output out(path, shown_path);
-  XdmfWriter(mesh, out, arrays, beside.filename().string(), context, notes).write();
+  XdmfWriter(mesh, out, arrays, reference_to(beside.filename().string()), context, notes).write();
   out.close();
   arrays.close();
   replacement.commit();
