@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """--report NAME.html: a page that stands alone, says what the JSON beside it says, and is there when a run fails."""
+import base64
 import html.parser
 import json
 import os
@@ -11,7 +12,8 @@ import case
 
 VOID = {"meta", "br", "hr", "img", "input", "link"}
 ALLOWED = set("""html head meta title style body main header h1 h2 h3 p div section span b code table tr th td ul li figure
-    figcaption details summary footer br svg rect line polygon text""".split())
+    figcaption details summary footer br svg rect line polygon text img i""".split())
+PICTURE = "data:image/png;base64,"
 ODD = """a <script>alert("1")</script> & 'b'"""  # a name
 
 
@@ -57,6 +59,10 @@ def read_page(test, name="r.html"):
     page = Page(text)
     test.assertEqual(set(page.tags) - ALLOWED, set())
     for tag, attribute, value in page.attributes:
+        if (tag, attribute) == ("img", "src"):  # within the page
+            test.assertTrue(value.startswith(PICTURE), value[:40])
+            test.assertTrue(base64.b64decode(value[len(PICTURE):], validate=True).startswith(b"\x89PNG"))
+            continue
         test.assertNotIn(attribute, ("src", "href", "srcset", "action", "data"), tag)
         test.assertFalse(attribute.startswith("on"), attribute)
         test.assertNotRegex(value, r"url\(|https?:|javascript:")
@@ -99,6 +105,8 @@ class Contents(case.Case):
             self.assertIn(f"{rank}. {worst['value']:.4g}° cell {worst['cells'][0]}", cells)
         self.assertEqual(sum(a == ("svg", "class", "cell") for a in page.attributes), len(angles["worst"]))
         self.assertEqual(sum(a == ("line", "class", "sharp") for a in page.attributes), len(angles["worst"]))
+        self.assertEqual(page.tags.count("img"), 1)
+        self.assertEqual(page.text(kind="names"), " ".join(group["name"] for group in report["boundaries"]))
         charts = sum(a == ("svg", "class", "chart") for a in page.attributes)
         self.assertEqual(charts, len(quality["measures"]) + 1)  # and sizes
         titles = [data for inside, data in page.texts if inside and inside[-1][0] == "title"][1:]
