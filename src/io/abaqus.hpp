@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "delfront/mesh.hpp"
+#include "io/local_faces.hpp"
 
 namespace delfront {
 
@@ -16,24 +16,7 @@ inline std::span<const std::array<int, 4>> abaqus_faces(CellType type) {
       {0, 1, 2, -1}, {3, 5, 4, -1}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
   static constexpr std::array<int, 4> kHex[] = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
                                                 {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
-  static constexpr std::array<int, 4> kTriangle[] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}};
-  static constexpr std::array<int, 4> kQuad[] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}};
-  switch (type) {
-    case CellType::tetrahedron:
-      return kTet;
-    case CellType::pyramid:
-      return kPyramid;
-    case CellType::prism:
-      return kPrism;
-    case CellType::hexahedron:
-      return kHex;
-    case CellType::triangle:
-      return kTriangle;
-    case CellType::quad:
-      return kQuad;
-    default:
-      return {};
-  }
+  return LocalFaces{kTet, kPyramid, kPrism, kHex}.of(type);
 }
 
 }  // namespace delfront

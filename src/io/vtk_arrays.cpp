@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "io/cursor.hpp"
+#include "io/whole_numbers.hpp"
 
 namespace delfront {
 
@@ -33,10 +34,7 @@ void convert(std::string_view raw, bool swap_bytes, std::vector<T>& out) {
     Stored value;
     std::memcpy(&value, raw.data() + i * sizeof(Stored), sizeof(Stored));
     if (swap_bytes) value = Cursor::swapped(value);
-    if constexpr (std::is_floating_point_v<Stored> && std::is_integral_v<T>)
-      out[i] = value > Stored(-9e18) && value < Stored(9e18) ? static_cast<T>(value) : T(-1);
-    else
-      out[i] = static_cast<T>(value);
+    out[i] = static_cast<T>(value);
   }
 }
 
@@ -205,10 +203,9 @@ std::vector<T> VtkArrays::values(const XmlElement& array) const {
         }
       }
       if (!parse_number(token, value)) fail(array, fmt::format("'{}' is no number", token.substr(0, 40)));
-      if constexpr (std::is_integral_v<T>)
-        out.push_back(value > -9e18 && value < 9e18 ? static_cast<T>(value) : T(-1));
-      else
-        out.push_back(value);
+      if (std::is_integral_v<T> && !is_whole(value))
+        fail(array, fmt::format("'{}' is no whole number", token.substr(0, 40)));
+      out.push_back(static_cast<T>(value));
     }
     return out;
   }
@@ -241,6 +238,11 @@ std::vector<T> VtkArrays::values(const XmlElement& array) const {
 }
 
 std::vector<double> VtkArrays::reals(const XmlElement& array) const { return values<double>(array); }
-std::vector<std::int64_t> VtkArrays::integers(const XmlElement& array) const { return values<std::int64_t>(array); }
+std::vector<std::int64_t> VtkArrays::integers(const XmlElement& array) const {
+  const std::string format = array.get("format");
+  if (array.get("type").starts_with("Float") && format != "ascii" && !format.empty())
+    return to_whole(reals(array), [&](const std::string& message) { fail(array, message); });
+  return values<std::int64_t>(array);
+}
 
 }  // namespace delfront

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <string_view>
@@ -69,6 +70,7 @@ class Artist {
   void place_on_paper();
   Canvas::Corner on_paper(Point p) const;
   bool hides_the_body(std::size_t boundary, Point area) const;
+  void choose_colours();
   Colour colour_of(std::size_t group) const;
   void draw_facets();
   void draw_facet(std::span<const VertexId> cell, std::size_t group);
@@ -79,6 +81,7 @@ class Artist {
   int sides_;  ///< dimension of the boundary's cells
   Canvas canvas_;
   std::vector<Boundary> boundaries_;  ///< by group, the last for cells without one
+  std::vector<Colour> colours_;       ///< by group, the last for cells without one
   Box box_;
   bool is_cut_open_ = false;
   Point right_{1, 0, 0}, up_{0, 1, 0}, ahead_{0, 0, 1}, centre_;
@@ -194,12 +197,16 @@ bool Artist::hides_the_body(std::size_t boundary, Point area) const {
   return mesh_.dimension == 3 && is_cut_open_ && !boundaries_[boundary].is_body && dot(area, ahead_) > 0;
 }
 
-Colour Artist::colour_of(std::size_t group) const {
-  if (group >= mesh_.groups.size()) return kNoGroup;
-  std::size_t number = 0;  // among those of its dimension
-  for (std::size_t g = 0; g < group; ++g)
-    number += mesh_.groups[GroupId(g)].dimension == mesh_.groups[GroupId(group)].dimension;
-  return kPalette[number % std::size(kPalette)];
+Colour Artist::colour_of(std::size_t group) const { return colours_[group]; }
+
+/// By turns, among boundaries and among regions.
+void Artist::choose_colours() {
+  std::array<std::size_t, 4> count{};
+  for (const Group& group : mesh_.groups) {
+    std::size_t& number = count[static_cast<std::size_t>(std::clamp(group.dimension, 0, 3))];
+    colours_.push_back(kPalette[number++ % std::size(kPalette)]);
+  }
+  colours_.push_back(kNoGroup);
 }
 
 void Artist::draw_facet(std::span<const VertexId> cell, std::size_t group) {
@@ -253,6 +260,7 @@ std::vector<Overview::Name> Artist::names() const {
 Overview Artist::draw() {
   look_at_boundaries();
   if (box_.is_empty() || !(box_.diagonal() > 0)) return {};
+  choose_colours();
   find_sides_of_the_box();
   find_body();
   choose_view();

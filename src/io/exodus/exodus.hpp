@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "delfront/mesh.hpp"
+#include "io/local_faces.hpp"
 
 namespace delfront {
 
@@ -17,24 +17,7 @@ inline std::span<const std::array<int, 4>> exodus_sides(CellType type) {
       {0, 1, 4, 3}, {1, 2, 5, 4}, {0, 3, 5, 2}, {0, 2, 1, -1}, {3, 4, 5, -1}};
   static constexpr std::array<int, 4> kHex[] = {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
                                                 {0, 4, 7, 3}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-  static constexpr std::array<int, 4> kTriangle[] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}};
-  static constexpr std::array<int, 4> kQuad[] = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}};
-  switch (type) {
-    case CellType::tetrahedron:
-      return kTet;
-    case CellType::pyramid:
-      return kPyramid;
-    case CellType::prism:
-      return kPrism;
-    case CellType::hexahedron:
-      return kHex;
-    case CellType::triangle:
-      return kTriangle;
-    case CellType::quad:
-      return kQuad;
-    default:
-      return {};
-  }
+  return LocalFaces{kTet, kPyramid, kPrism, kHex}.of(type);
 }
 
 /// Attribute of the file: lines as name_line() makes them, numbers are ids of blocks and side sets.

@@ -11,13 +11,14 @@
 #include "delfront/errors.hpp"
 #include "io/cursor.hpp"
 #include "io/exodus/netcdf.hpp"
+#include "io/whole_numbers.hpp"
 
 namespace delfront {
 
 namespace {
 
 constexpr std::uint32_t kDimensions = 10, kVariables = 11, kAttributes = 12;
-constexpr std::uint32_t kText = 2;
+constexpr std::uint32_t kText = 2, kSingleReal = 5, kReal = 6;
 constexpr std::size_t kSizes[12] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};  // bytes by number of type
 constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
 
@@ -56,7 +57,12 @@ class Classic : public NetcdfSource {
   std::vector<std::uint64_t> shape(const std::string& variable) const override { return find(variable).shape; }
 
   std::vector<double> reals(const std::string& name) const override { return values<double>(name); }
-  std::vector<std::int64_t> integers(const std::string& name) const override { return values<std::int64_t>(name); }
+  std::vector<std::int64_t> integers(const std::string& name) const override {
+    const std::uint32_t type = find(name).type;
+    if (type != kSingleReal && type != kReal) return values<std::int64_t>(name);
+    return to_whole(values<double>(name),
+                    [&](const std::string& message) { fail(fmt::format("variable {}: {}", name, message)); });
+  }
 
   std::string text(const std::string& name) const override {
     const Variable& variable = find(name);
@@ -194,10 +200,7 @@ class Classic : public NetcdfSource {
       Stored value;
       std::memcpy(&value, raw.data() + i, sizeof(Stored));
       if (std::endian::native == std::endian::little) value = Cursor::swapped(value);
-      if constexpr (std::is_floating_point_v<Stored> && std::is_integral_v<T>)
-        to.push_back(value > Stored(-9e18) && value < Stored(9e18) ? static_cast<T>(value) : T(-1));
-      else
-        to.push_back(static_cast<T>(value));
+      to.push_back(static_cast<T>(value));
     }
   }
 
@@ -214,9 +217,9 @@ class Classic : public NetcdfSource {
           return convert<std::int16_t>(raw, all);
         case 4:
           return convert<std::int32_t>(raw, all);
-        case 5:
+        case kSingleReal:
           return convert<float>(raw, all);
-        case 6:
+        case kReal:
           return convert<double>(raw, all);
         case 7:
           return convert<std::uint8_t>(raw, all);

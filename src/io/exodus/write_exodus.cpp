@@ -58,23 +58,24 @@ class ExodusWriter {
   };
 
   void make_blocks() {
-    for (std::size_t slot = 0; slot <= mesh_.groups.size(); ++slot) {
-      const std::int64_t group = slot < mesh_.groups.size() ? static_cast<std::int64_t>(slot) : -1;
-      if (group >= 0 && mesh_.groups[GroupId(slot)].dimension != top_) continue;
-      const std::string own = group >= 0 ? names_[slot] : top_ == mesh_.dimension ? "cells" : "faces";
-      bool is_first = true;
-      for (const CellBlock& cells : mesh_.blocks) {
-        if (dimension(cells.type) != top_) continue;
-        Block block{"", &cells, group, {}};
-        for (std::size_t cell = 0; cell < cells.size(); ++cell)
-          if (group_of(cells, cell) == group) block.members.push_back(static_cast<std::uint32_t>(cell));
-        if (block.members.empty()) continue;
-        block.name = unique_name(is_first && group >= 0 ? own : fmt::format("{}_{}", own, name_of(cells.type)));
-        is_first = false;
+    std::vector<std::vector<Block>> of_group(mesh_.groups.size() + 1);  // the last for cells without one
+    for (const CellBlock& cells : mesh_.blocks)
+      for (std::size_t cell = 0; dimension(cells.type) == top_ && cell < cells.size(); ++cell) {
+        const std::int64_t group = group_of(cells, cell);
+        auto& blocks = of_group[group >= 0 ? static_cast<std::size_t>(group) : mesh_.groups.size()];
+        if (blocks.empty() || blocks.back().cells != &cells) blocks.push_back({"", &cells, group, {}});
+        blocks.back().members.push_back(static_cast<std::uint32_t>(cell));
+      }
+    for (std::vector<Block>& blocks : of_group)
+      for (Block& block : blocks) {
+        const std::string own = block.group >= 0          ? names_[static_cast<std::size_t>(block.group)]
+                                : top_ == mesh_.dimension ? "cells"
+                                                          : "faces";
+        const bool is_first = &block == &blocks.front() && block.group >= 0;
+        block.name = unique_name(is_first ? own : fmt::format("{}_{}", own, name_of(block.cells->type)));
         offer_sides(block);
         blocks_.push_back(std::move(block));
       }
-    }
     if (next_element_ > std::numeric_limits<std::int32_t>::max())
       throw InputError("Exodus: more than 2^31 - 1 elements are not written; write VTU");
   }

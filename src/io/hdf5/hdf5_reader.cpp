@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
 #include "delfront/errors.hpp"
+#include "io/whole_numbers.hpp"
 
 namespace delfront {
 
@@ -173,17 +173,10 @@ std::vector<double> Hdf5Reader::reals(const Array& array) const {
 }
 
 std::vector<std::int64_t> Hdf5Reader::integers(const Array& array) const {
-  std::vector<std::int64_t> values;
-  if (array.holds == Holds::reals) {
-    for (const double value : reals(array)) {
-      if (!(std::abs(value) < 9e18) || value != std::trunc(value))
-        fail(array.path, fmt::format("value {} is {}, and a whole number should stand there", values.size(), value));
-      values.push_back(static_cast<std::int64_t>(value));
-    }
-    return values;
-  }
+  if (array.holds == Holds::reals)
+    return to_whole(reals(array), [&](const std::string& message) { fail(array.path, message); });
   if (array.holds == Holds::text) fail(array.path, "it holds text where whole numbers should stand");
-  values.resize(array.count);
+  std::vector<std::int64_t> values(array.count);
   read(array, H5T_NATIVE_INT64, values.data());
   return values;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "io/hdf5/library_reading.hpp"
 #include "io/hdf5/xdmf.hpp"
 #include "io/vtk_grid.hpp"
+#include "io/whole_numbers.hpp"
 #include "io/xml.hpp"
 
 namespace delfront {
@@ -280,7 +280,7 @@ class XdmfReader {
         continue;
       }
       if (!parse_number(token, value)) fail(data, fmt::format("'{}' is no number", token.substr(0, 40)));
-      if (std::is_integral_v<T> && (!(std::abs(value) < 9e18) || value != std::trunc(value)))
+      if (std::is_integral_v<T> && !is_whole(value))
         fail(data, fmt::format("'{}' is no whole number of 64 bits", token.substr(0, 40)));
       values.push_back(static_cast<T>(value));
     }
