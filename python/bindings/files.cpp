@@ -41,7 +41,8 @@ nb::list texts_of(std::vector<std::string> changes, const StarterFiles& starter)
 
 nb::list write(const Mesh& mesh, const std::string& path, bool binary, const std::string& version, bool compress,
                const std::string& format, const std::string& solver, const Hooks& hooks) {
-  const ConvertOptions options{.to = format, .how = write_options(binary, version, compress), .solver = solver};
+  const ConvertOptions options{
+      .from = "", .to = format, .how = write_options(binary, version, compress), .solver = solver};
   StarterFiles starter;
   const std::vector<std::string> changes =
       run_released(hooks, [&](Context& context) { return write_for_solver(mesh, path, options, context, starter); });

@@ -309,6 +309,52 @@ class Formats(unittest.TestCase):
         self.assertNotIn("Error", text)
         self.assertEqual(counts(self.folder / "read.msh")[1].get("tetra"), wanted["tetra"], text)
 
+    def cgns_files(self):
+        if not netCDF4:
+            self.skipTest("h5py and netCDF4 are not installed (Debian python3-h5py, python3-netcdf4)")
+        if "cgns" not in run(DELFRONT, "--help")[1]:
+            self.skipTest("built without the CGNS library")
+        import cgns_files
+        return cgns_files
+
+    def test_cgns_with_several_types_in_a_section_and_of_later_versions_is_read(self):
+        cgns_files = self.cgns_files()
+        before = set(pathlib.Path(tempfile.gettempdir()).glob("delfront_??????"))
+        for version, has_offsets in ((3.1, False), (3.4, True), (4.0, True), (4.5, True)):
+            with self.subTest(version):
+                cgns_files.write(self.folder / "a.cgns", version, has_offsets)
+                written = (self.folder / "a.cgns").read_bytes()
+                self.convert(self.folder / "a.cgns", self.folder / "back.msh")
+                mesh, found = counts(self.folder / "back.msh")
+                self.assertEqual({key: found[key] for key in ("pyramid", "tetra", "triangle")},
+                                 {"pyramid": 1, "tetra": 2, "triangle": 8})
+                self.assertLessEqual({"wall", "under"}, set(mesh.field_data))
+                self.assertTrue(all(v > 0 for v in self.signed_volumes(mesh)))
+                self.assertEqual((self.folder / "a.cgns").read_bytes(), written)
+        self.assertEqual(set(pathlib.Path(tempfile.gettempdir()).glob("delfront_??????")), before)
+
+    def test_cgns_arrays_of_a_wrong_size_are_refused_or_read_safely(self):
+        cgns_files = self.cgns_files()
+        lists = np.arange(1, 301, dtype="i4")
+        # What is wrong, and the status: 0 where it does not matter.
+        for change, wanted in (({"wall": lists.reshape(3, 100)}, 3), ({"wall": lists.reshape(100, 3)}, 3),
+                               ({"volume": [10, 1, 2, 3]}, 3), ({"volume": [99] + cgns_files.VOLUME[1:]}, 3),
+                               ({"volume": [-7] + cgns_files.VOLUME[1:]}, 3), ({"offsets": range(500)}, 0),
+                               ({"family": "/Base/" + "x" * 30}, 0), ({"version": 4.2, "wall": lists.reshape(3, 100)}, 3)):
+            with self.subTest(str(change)[:60]):
+                family = change.pop("family", "wall")
+                cgns_files.write(self.folder / "a.cgns", family=family.replace("/", "_")[-32:], **change)
+                if "/" in family:  # the way to a family, of any length
+                    with h5py.File(self.folder / "a.cgns", "a") as file:
+                        node = file["Base/Zone/ZoneBC/top/FamilyName"]
+                        del node[" data"]
+                        node.create_dataset(" data", data=np.frombuffer((family + "/" + "y" * 500).encode(), dtype="i1"))
+                status, said = run(DELFRONT, "convert", self.folder / "a.cgns", self.folder / "back.msh")
+                self.assertEqual(status, wanted, said)
+                if wanted:
+                    self.assertIn("a.cgns", said)
+                    self.assertNotIn("crash", said)
+
     def test_cgnscheck_finds_nothing(self):
         if not shutil.which("cgnscheck"):
             self.skipTest("cgnscheck is not installed (Debian cgns-convert)")

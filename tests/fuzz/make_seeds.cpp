@@ -181,6 +181,7 @@ int main(int argc, char** argv) {
       "NodesPerElement=\"2\"><DataItem>0 1</DataItem></Topology></Grid></Domain></Xdmf>");
   write_text(root, "vtkhdf", any_bytes(1));
   write_text(root, "netcdf4", any_bytes(2));
+  write_text(root, "cgns", any_bytes(3));
   write_text(
       root, "nastran",
       "$HMNAME COMP                   1\"wall\"\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID    2               1.0+0   0.0     "

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/cgns/cgns_file.hpp"
 
+#include <cgns_io.h>
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 
 #include "delfront/errors.hpp"
 
@@ -39,6 +43,22 @@ constexpr KindRow kKinds[] = {{BCWall, "wall"},
                               {BCSymmetryPlane, "symmetry"},
                               {BCSymmetryPolar, "symmetry"}};
 
+/// @return the first child of that name or label, to be released; nothing where there is none
+std::optional<double> find_child(int io, double parent, std::string_view wanted) {
+  int num_children = 0, num_found = 0;
+  cgio_number_children(io, parent, &num_children);
+  for (int i = 1; i <= num_children; ++i) {
+    double child = 0;
+    std::array<char, 33> name{}, label{};
+    if (cgio_children_ids(io, parent, i, 1, &num_found, &child) != CG_OK || num_found != 1) continue;
+    cgio_get_name(io, child, name.data());
+    cgio_get_label(io, child, label.data());
+    if (wanted == name.data() || wanted == label.data()) return child;
+    cgio_release_id(io, child);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 CgnsFile::CgnsFile(const std::string& path, int mode, std::string shown_path)
@@ -56,6 +76,27 @@ void CgnsFile::check(int status, const std::string& doing) const {
   if (is_writing_) throw IoError(fmt::format("cannot write {}: {}: {}", shown_path_, doing, cg_get_error()));
   throw InputError(fmt::format("{}: {} cannot be read as CGNS: {}; the file is damaged or of another kind", shown_path_,
                                doing, cg_get_error()));
+}
+
+std::uint64_t CgnsFile::num_values(std::initializer_list<std::string_view> path) const {
+  int io = 0, rank = 0;
+  double root = 0;
+  check(cg_get_cgio(number_, &io), "the file");
+  check(cg_root_id(number_, &root), "the file");
+  std::optional<double> node = root;
+  for (const std::string_view step : path) {
+    const double parent = *node;
+    node = find_child(io, parent, step);
+    if (parent != root) cgio_release_id(io, parent);
+    if (!node) return 0;
+  }
+  std::array<cgsize_t, CGIO_MAX_DIMENSIONS> extents{};
+  const int status = cgio_get_dimensions(io, *node, &rank, extents.data());
+  cgio_release_id(io, *node);
+  check(status, "the size of an array");
+  std::uint64_t n = rank > 0 ? 1 : 0;
+  for (int i = 0; i < rank; ++i) n *= static_cast<std::uint64_t>(std::max<cgsize_t>(extents[std::size_t(i)], 0));
+  return n;
 }
 
 void CgnsFile::close() {

@@ -2,8 +2,11 @@
 #pragma once
 #include <cgnslib.h>
 
+#include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "delfront/mesh.hpp"
 #include "io/hdf5/hdf5_handle.hpp"
@@ -23,6 +26,10 @@ class CgnsFile {
   int number() const { return number_; }
   /// @brief Throws where a call of the library failed. @param doing  "the coordinates of zone 'x'", …
   void check(int status, const std::string& doing) const;
+  /// @brief How many numbers a node really holds, which the library copies whole whatever room it has asked for.
+  /// @param path  names, or labels of nodes of which there is one: {"Base", "Zone", "ZoneBC_t", "wall", "PointList"}
+  /// @return 0 where there is no such node
+  std::uint64_t num_values(std::initializer_list<std::string_view> path) const;
   /// @brief Close it now and check that.
   void close();
 

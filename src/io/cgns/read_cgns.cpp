@@ -14,6 +14,7 @@
 #include "delfront/errors.hpp"
 #include "io/cells.hpp"
 #include "io/cgns/cgns_file.hpp"
+#include "io/cgns/older_version.hpp"
 #include "io/formats.hpp"
 #include "io/grid_parts.hpp"
 #include "io/hdf5/library_reading.hpp"
@@ -22,7 +23,8 @@ namespace delfront {
 
 namespace {
 
-using Name = std::array<char, 128>;  // the library writes up to 33 characters, for families of 4.x more
+// The library writes up to 33 characters, for names of families as many for each node on the way to one.
+using Name = std::array<char, CG_MAX_GOTO_DEPTH * 33 + 1>;
 
 struct PointHash {
   std::size_t operator()(const std::array<double, 3>& p) const {
@@ -56,6 +58,7 @@ class CgnsReader {
     if (cell_dimension < 1 || cell_dimension > 3 || space < 1 || space > 3)
       throw InputError(fmt::format("{}: base of dimension {} in space of dimension {}", path_, cell_dimension, space));
     mesh_.dimension = 3;
+    base_name_ = name.data();
     cell_dimension_ = cell_dimension;
     file_.check(cg_nzones(fn(), kBase, &num_zones), "the number of zones");
     read_families();
@@ -208,9 +211,23 @@ class CgnsReader {
         fail(where, fmt::format("elements {} to {} with {} numbers; the file is damaged", first, last, size));
       context_.check_limits();
       std::vector<cgsize_t> numbers(static_cast<std::size_t>(size));
-      if (size > 0) file_.check(cg_elements_read(fn(), kBase, zone, section, numbers.data(), nullptr), where);
+      if (size > 0 && type != MIXED)
+        file_.check(cg_elements_read(fn(), kBase, zone, section, numbers.data(), nullptr), where);
+      else if (size > 0)
+        file_.check(read_mixed(zone, section, name.data(), numbers), where);
       take_elements(where, type, first, last, numbers, vertices);
     }
+  }
+
+  /// Since 3.4 the library has a call of its own for them, with the offsets of the elements, which tell nothing more.
+  int read_mixed(int zone, int section, const std::string& section_name, std::vector<cgsize_t>& numbers) const {
+#if CGNS_VERSION >= 3400
+    const std::uint64_t n = file_.num_values({base_name_, zone_name_, section_name, "ElementStartOffset"});
+    std::vector<cgsize_t> offsets(std::max<std::size_t>(n, numbers.size() + 1));
+    return cg_poly_elements_read(fn(), kBase, zone, section, numbers.data(), offsets.data(), nullptr);
+#else
+    return cg_elements_read(fn(), kBase, zone, section, numbers.data(), nullptr);
+#endif
   }
 
   void take_elements(const std::string& where, ElementType_t section_type, cgsize_t first, cgsize_t last,
@@ -220,11 +237,13 @@ class CgnsReader {
       ElementType_t type = section_type;
       if (type == MIXED) {
         if (at >= numbers.size()) fail(where, "it ends within its elements; the file is damaged");
-        type = static_cast<ElementType_t>(numbers[at++]);
+        const cgsize_t number = numbers[at++];
+        type = number > 0 && number < NofValidElementTypes ? static_cast<ElementType_t>(number) : ElementTypeNull;
       }
       const auto cell = type_from_cgns(type);
       if (!cell)
-        fail(where, fmt::format("an element of type {} is not read; export linear ones", static_cast<int>(type)));
+        fail(where, fmt::format("element {} is of type {}, which is not read; export linear ones, no polyhedra",
+                                element, cg_ElementTypeName(type)));
       const auto num = static_cast<std::size_t>(num_vertices(*cell));
       if (numbers.size() - at < num) fail(where, "it ends within its elements; the file is damaged");
       Element added;
@@ -278,6 +297,11 @@ class CgnsReader {
       file_.check(cg_boco_gridlocation_read(fn(), kBase, zone, number, &location), "the location of a condition");
       if (num_points < 0 || static_cast<std::uint64_t>(num_points) > 1000 * file_size_)
         fail(fmt::format("condition {}", name.data()), fmt::format("{} numbers; the file is damaged", num_points));
+      const std::uint64_t num_stored =
+          file_.num_values({base_name_, zone_name_, "ZoneBC_t", name.data(), cg_PointSetTypeName(set)});
+      if (num_stored > static_cast<std::uint64_t>(num_points))
+        fail(fmt::format("condition {}", name.data()),
+             fmt::format("{} numbers where there should be {}; the file is damaged", num_stored, num_points));
       std::vector<cgsize_t> numbers(static_cast<std::size_t>(num_points));
       if (num_points > 0) file_.check(cg_boco_read(fn(), kBase, zone, number, numbers.data(), nullptr), "a condition");
       std::string group = name.data(), kind = kind_from_cgns(condition);
@@ -371,7 +395,7 @@ class CgnsReader {
   }
 
   CgnsFile& file_;
-  std::string path_, zone_name_;
+  std::string path_, base_name_, zone_name_;
   std::uint64_t file_size_;
   Context& context_;
   Mesh mesh_;
@@ -391,7 +415,8 @@ Mesh read_cgns(const std::string& path, Context& context) {
   if (size == 0) throw InputError(fmt::format("{}: the file is empty; export it again", path));
   const Hdf5Turn turn;
   const LibraryReading reading(path, context);
-  CgnsFile file(path, CG_MODE_READ, path);
+  const OlderVersion readable(path, context);
+  CgnsFile file(readable.path(), CG_MODE_READ, path);
   return CgnsReader(file, path, size, context).read();
 }
 

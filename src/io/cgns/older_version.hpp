@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "delfront/context.hpp"
+
+namespace delfront {
+
+/// @brief A CGNS file as the library here takes it: it refuses those of a later version (4.x where it is 3.4) for the
+/// number alone, though nodes of unstructured grids are the same. Such a file is copied, with the library's own number,
+/// to the folder of temporary files, until this ends. Hold a Hdf5Turn.
+class OlderVersion {
+ public:
+  /// @throws IoError  where there is no room for the copy
+  OlderVersion(const std::string& path, Context& context);
+  ~OlderVersion();
+  OlderVersion(const OlderVersion&) = delete;
+  OlderVersion& operator=(const OlderVersion&) = delete;
+
+  /// @brief What to open: the file itself, or its copy.
+  const std::string& path() const { return copy_.empty() ? path_ : copy_; }
+
+ private:
+  std::string path_, copy_;
+};
+
+}  // namespace delfront
