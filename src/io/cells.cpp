@@ -108,6 +108,23 @@ void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::
                                 fmt::join(kinds, ", ")));
 }
 
+void note_empty_groups(const Mesh& mesh, const char* format, std::vector<std::string>& notes, bool has_patches) {
+  std::vector<bool> has_cells(mesh.groups.size(), false);
+  for (const CellBlock& block : mesh.blocks)
+    for (const GroupId group : block.group)
+      if (group.is_valid()) has_cells[group.index()] = true;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
+    const Group& group = mesh.groups[GroupId(i)];
+    if (!has_cells[i] && group.dimension >= mesh.dimension - (has_patches ? 0 : 1))
+      names.push_back(fmt::format("'{}'", group.name));
+  }
+  if (!names.empty())
+    notes.push_back(fmt::format("{}: {} without cells left out: {}; VTU and MSH keep them", format,
+                                names.size() == 1 ? "a group" : fmt::format("{} groups", names.size()),
+                                fmt::join(names, ", ")));
+}
+
 void note_left_out_curves(const Mesh& mesh, const char* format, std::vector<std::string>& notes) {
   const std::size_t lines = mesh.num_cells(CellType::line), points = mesh.num_cells(CellType::vertex);
   if (mesh.dimension == 3 && lines + points > 0)

@@ -50,6 +50,10 @@ void note_left_out_fields(const Mesh& mesh, const char* format, std::vector<std:
 void note_left_out_kinds(const Mesh& mesh, const char* format, std::vector<std::string>& notes,
                          std::span<const char* const> keeps = {});
 
+/// @brief A sentence that names regions and patches without cells, for formats that hold a group as its cells.
+/// @param has_patches  the format has a place for patches without faces
+void note_empty_groups(const Mesh& mesh, const char* format, std::vector<std::string>& notes, bool has_patches = false);
+
 /// @brief A sentence where a mesh in space has lines or vertex cells, for formats that cannot hold them.
 void note_left_out_curves(const Mesh& mesh, const char* format, std::vector<std::string>& notes);
 

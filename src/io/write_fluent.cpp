@@ -184,6 +184,7 @@ void write_fluent(const Mesh& mesh, Output& out, const WriteOptions&, Context& c
                     mesh.dimension));
   note_left_out_fields(mesh, "Fluent", notes);
   note_left_out_curves(mesh, "Fluent", notes);
+  note_empty_groups(mesh, "Fluent", notes);
   FluentWriter(mesh, out, context, notes).write();
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenFOAM polyMesh, ASCII. Internal faces in upper-triangular order, then one range a patch; cellZones where there is
-// more than one region. Groups of inner faces: between two regions a faceZone; with the same region on both sides a
-// baffle, that is two patches NAME_master (the side that the stored faces' normals leave) and NAME_slave on the same
-// points. The mesh is written into a hidden folder in constant/ that replaces polyMesh when it is whole.
+// OpenFOAM polyMesh, ASCII. Internal faces in upper-triangular order, then one range a patch; cellZones for
+// regions, unless there is one without a name. Groups of inner faces: between two regions a faceZone; with the same
+// region on both sides a baffle, that is two patches NAME_master (the side that the stored faces' normals leave) and
+// NAME_slave on the same points. The mesh is written into a hidden folder in constant/ that replaces polyMesh when it
+// is whole.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,6 +63,7 @@ class FoamWriter {
     note_left_out_fields(mesh, "OpenFOAM", notes);
     note_left_out_kinds(mesh, "OpenFOAM", notes, kKinds);
     note_left_out_curves(mesh, "OpenFOAM", notes);
+    note_empty_groups(mesh, "OpenFOAM", notes);
   }
 
   void write(const std::string& folder, const std::string& shown) {
@@ -200,8 +202,12 @@ class FoamWriter {
       for (std::size_t cell = 0; cell < faces_.blocks[b]->size(); ++cell)
         if (const std::int64_t group = group_of(*faces_.blocks[b], cell); group >= 0)
           zones[static_cast<std::size_t>(group)].push_back(faces_.first_cell[b] + cell);
-    for (const auto& zone : zones) num_zones += !zone.empty();
-    if (num_zones < 2) return;
+    bool has_names = false;
+    for (std::size_t group = 0; group < zones.size(); ++group) {
+      num_zones += !zones[group].empty();
+      has_names = has_names || (!zones[group].empty() && !mesh_.groups[GroupId(group)].name.empty());
+    }
+    if (num_zones < 2 && !has_names) return;
     write_file(folder, "cellZones", shown, foam_header("regIOobject", kLocation, "cellZones"), [&](Output& out) {
       out.text(fmt::format("{}\n(\n", num_zones));
       for (std::size_t group = 0; group < zones.size(); ++group) {

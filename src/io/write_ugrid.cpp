@@ -138,6 +138,7 @@ void write_ugrid_as(const Mesh& mesh, Output& out, Encoding encoding, Context& c
     throw InputError("binary UGRID of 4-byte numbers holds at most 2^31 - 1 nodes; write text (.ugrid)");
   note_left_out_fields(mesh, "UGRID", notes);
   note_left_out_kinds(mesh, "UGRID", notes, kKinds);
+  note_empty_groups(mesh, "UGRID", notes);
   if (const std::size_t n = mesh.num_cells(CellType::line) + mesh.num_cells(CellType::vertex); n > 0)
     notes.push_back(
         fmt::format("UGRID: {} lines and points are left out, with their names; SU2, VTU and MSH keep them", n));

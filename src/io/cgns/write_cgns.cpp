@@ -194,6 +194,7 @@ void write_cgns(const Mesh& mesh, const std::string& path, const std::string& sh
   if (mesh.top_dimension() < 1) throw InputError("CGNS: a mesh of points alone cannot be written");
   note_left_out_fields(mesh, "CGNS", notes);
   if (mesh.top_dimension() == 3) note_left_out_curves(mesh, "CGNS", notes);
+  note_empty_groups(mesh, "CGNS", notes);
   const Hdf5Turn turn;
   const Replacement draft(path);  // never committed
   CgnsFile file(draft.temporary(), CG_MODE_WRITE, shown_path);

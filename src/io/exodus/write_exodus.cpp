@@ -267,6 +267,7 @@ void write_exodus(const Mesh& mesh, Output& out, const WriteOptions&, Context& c
     throw InputError("Exodus: more than 2^31 - 1 points are not written; write VTU");
   note_left_out_fields(mesh, "Exodus", notes);
   note_left_out_curves(mesh, "Exodus", notes);
+  note_empty_groups(mesh, "Exodus", notes, true);
   ExodusWriter(mesh, out, context, notes).write();
 }
 

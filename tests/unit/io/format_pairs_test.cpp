@@ -20,7 +20,6 @@ struct FormatCase {
   bool regions = true;
   bool inner = true;                 // faces of inner patches
   std::set<std::string> kinds = {};  // that come back
-  bool only_region = true;           // its name, where there is one
   bool loose_names = true;           // cells without a group stay so
 };
 
@@ -38,7 +37,7 @@ std::vector<FormatCase> all_formats() {
                                  {.file = "a.inp", .kinds = kAllKinds},
                                  {.file = "f.msh", .format = "fluent", .kinds = kAllKinds},
                                  {.file = "a.su2", .regions = false, .inner = false},
-                                 {.file = "case/", .plane = false, .kinds = {"wall", "symmetry"}, .only_region = false},
+                                 {.file = "case/", .plane = false, .kinds = {"wall", "symmetry"}},
                                  {.file = "a.ugrid", .plane = false, .kinds = kSolverKinds, .loose_names = false},
                                  {.file = "a.b8.ugrid", .plane = false, .kinds = kSolverKinds, .loose_names = false},
                                  {.file = "a.lb8.ugrid", .plane = false, .kinds = kSolverKinds, .loose_names = false}};
@@ -117,7 +116,6 @@ FormatCase both(const FormatCase& a, const FormatCase& b) {
   keeps.volume = a.volume && b.volume;
   keeps.regions = a.regions && b.regions;
   keeps.inner = a.inner && b.inner;
-  keeps.only_region = a.only_region && b.only_region;
   keeps.kinds.clear();
   std::set_intersection(a.kinds.begin(), a.kinds.end(), b.kinds.begin(), b.kinds.end(),
                         std::inserter(keeps.kinds, keeps.kinds.end()));
@@ -131,10 +129,7 @@ Mesh through(const Mesh& mesh, const FormatCase& format, const std::filesystem::
   return read_mesh(path, context);
 }
 
-void expect_kept(const Mesh& got, const Mesh& want, FormatCase keeps) {
-  std::size_t num_regions = 0;
-  for (const Group& group : want.groups) num_regions += group.dimension == want.dimension;
-  if (num_regions < 2 && !keeps.only_region) keeps.regions = false;
+void expect_kept(const Mesh& got, const Mesh& want, const FormatCase& keeps) {
   ASSERT_EQ(got.dimension, want.dimension);
   ASSERT_EQ(got.points.size(), want.points.size());
   const Box box = want.bounding_box();
@@ -163,6 +158,20 @@ TEST_P(FormatPairs, ten_grids_go_there_and_on_to_every_other) {
       ASSERT_NO_FATAL_FAILURE(expect_kept(through(once, second, folder), mesh, both(first, second)));
     }
   }
+}
+
+TEST_P(FormatPairs, groups_without_cells_stay_or_are_named) {
+  Mesh mesh = two_region_block();
+  mesh.add_group(2, "ghost_patch", "wall");
+  mesh.add_group(3, "ghost_region");
+  const std::string path = (scratch_folder() / GetParam().file).string();
+  Context context;
+  const std::vector<std::string> notes = write_mesh(mesh, path, context, {}, GetParam().format);
+  std::string known;
+  for (const std::string& note : notes) known += note + "\n";
+  for (const Group& group : read_mesh(path, context).groups) known += group.name + "\n";
+  EXPECT_NE(known.find("ghost_patch"), std::string::npos) << known;
+  EXPECT_TRUE(!GetParam().regions || known.find("ghost_region") != std::string::npos) << known;
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, FormatPairs, testing::ValuesIn(all_formats()), [](const auto& test) {

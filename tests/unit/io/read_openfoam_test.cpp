@@ -114,7 +114,7 @@ TEST(ReadOpenFoam, text_as_other_writers_have_it) {
   change(folder, "points", "FoamFile", "/* a\nlogo */ // and a line\nFoamFile");
   change(folder, "boundary", "type            wall;", "type wall; inGroups 1(wall); more { of \"it;\"; }");
   Context context;
-  EXPECT_EQ(read_mesh(folder.string(), context).groups[GroupId(0)].kind, "wall");
+  EXPECT_EQ(read_mesh(folder.string(), context).groups[GroupId(1)].kind, "wall");
 }
 
 TEST(ReadOpenFoam, damage_is_named_with_file_and_line) {
