@@ -41,12 +41,9 @@ class AbaqusWriter {
     }
     write_nodes();
     write_elements();
-    for (std::size_t i = 0; i < names_.size(); ++i)
-      if (mesh_.groups[GroupId(i)].dimension == top_) write_set(GroupId(i));
+    write_sets();
     find_faces();
-    for (std::size_t i = 0; i < names_.size(); ++i)
-      if (mesh_.groups[GroupId(i)].dimension == top_ - 1) write_surface(static_cast<std::int64_t>(i), names_[i]);
-    write_surface(-1, "DELFRONT_UNNAMED");
+    write_surfaces();
     if (num_loose_ > 0) notes_.push_back(fmt::format("Abaqus: {} faces that bound no cell are left out", num_loose_));
   }
 
@@ -110,20 +107,25 @@ class AbaqusWriter {
   }
 
   /// Runs of numbers: groups mostly are.
-  void write_set(GroupId group) {
-    out_.text(fmt::format("*ELSET, ELSET={}, GENERATE\n", names_[group.index()]));
+  void write_sets() {
+    struct Run {
+      std::int64_t first, last;
+    };
+    std::vector<std::vector<Run>> of_group(names_.size());
     for_each_block(top_, [&](const CellBlock& block, std::int64_t first) {
-      const auto is_in = [&](std::size_t cell) {
-        return group_of(block, cell) == static_cast<std::int64_t>(group.index());
-      };
       for (std::size_t cell = 0; cell < block.size(); ++cell) {
-        if (!is_in(cell)) continue;
-        const std::size_t begin = cell;
-        while (cell + 1 < block.size() && is_in(cell + 1)) ++cell;
-        out_.text(fmt::format("{}, {}, 1\n", first + static_cast<std::int64_t>(begin),
-                              first + static_cast<std::int64_t>(cell)));
+        const std::int64_t group = group_of(block, cell), number = first + static_cast<std::int64_t>(cell);
+        if (group < 0) continue;
+        auto& runs = of_group[static_cast<std::size_t>(group)];
+        if (runs.empty() || runs.back().last + 1 < number) runs.push_back({number, number});
+        runs.back().last = number;
       }
     });
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (mesh_.groups[GroupId(i)].dimension != top_) continue;
+      out_.text(fmt::format("*ELSET, ELSET={}, GENERATE\n", names_[i]));
+      for (const Run& run : of_group[i]) out_.text(fmt::format("{}, {}, 1\n", run.first, run.last));
+    }
   }
 
   void find_faces() {
@@ -134,22 +136,34 @@ class AbaqusWriter {
     });
   }
 
-  void write_surface(std::int64_t wanted, const std::string& name) {
-    std::vector<FaceOwners::Owner> faces;
-    std::vector<std::int64_t> nodes;
+  using Face = std::pair<const CellBlock*, std::size_t>;
+
+  void write_surfaces() {
+    std::vector<std::vector<Face>> of_group(names_.size() + 1);  // the last for faces without one
     for (const CellBlock& block : mesh_.blocks)
       for (std::size_t cell = 0; dimension(block.type) == top_ - 1 && cell < block.size(); ++cell) {
-        if (group_of(block, cell) != wanted) continue;
-        const FaceOwners::Owner* owner = owners_.find(block[cell]);
-        if (!owner) {
-          ++num_loose_;
-          continue;
-        }
-        faces.push_back(*owner);
-        for (const VertexId v : block[cell]) nodes.push_back(static_cast<std::int64_t>(v.index()) + 1);
+        const std::int64_t group = group_of(block, cell);
+        of_group[group < 0 ? names_.size() : static_cast<std::size_t>(group)].emplace_back(&block, cell);
       }
-    if (faces.empty() && (wanted < 0 || top_ != mesh_.dimension)) return;
-    if (wanted < 0)
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      if (mesh_.groups[GroupId(i)].dimension == top_ - 1) write_surface(of_group[i], names_[i], true);
+    write_surface(of_group.back(), "DELFRONT_UNNAMED", false);
+  }
+
+  void write_surface(const std::vector<Face>& stored, const std::string& name, bool is_patch) {
+    std::vector<FaceOwners::Owner> faces;
+    std::vector<std::int64_t> nodes;
+    for (const auto& [block, cell] : stored) {
+      const FaceOwners::Owner* owner = owners_.find((*block)[cell]);
+      if (!owner) {
+        ++num_loose_;
+        continue;
+      }
+      faces.push_back(*owner);
+      for (const VertexId v : (*block)[cell]) nodes.push_back(static_cast<std::int64_t>(v.index()) + 1);
+    }
+    if (faces.empty() && (!is_patch || top_ != mesh_.dimension)) return;
+    if (!is_patch)
       notes_.push_back(fmt::format("Abaqus: {} faces without a patch are in the surface {}", faces.size(), name));
     out_.text(fmt::format("*SURFACE, NAME={}, TYPE=ELEMENT\n", name));
     for (const FaceOwners::Owner& face : faces) out_.text(fmt::format("{}, S{}\n", face.element, face.face));
