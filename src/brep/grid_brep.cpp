@@ -13,6 +13,7 @@
 #include "brep/assemble_brep.hpp"
 #include "brep/bridge.hpp"
 #include "brep/edge_points.hpp"
+#include "brep/face_bends.hpp"
 #include "brep/face_mesh.hpp"
 #include "brep/sharp_corners.hpp"
 #include "brep/vague_normals.hpp"
@@ -255,7 +256,22 @@ class BrepGridder {
     ++report_.sizes_lowered;
   }
 
-  /// Sizes are lowered at the place, each third time all over the face.
+  /// Once a face: sizes are lowered along bends that they do not know.
+  /// @return whether there are any
+  bool lower_along_bends(FaceId f) {
+    const FaceGrid& grid = grids_[f];
+    ParameterBox box{grid.points[0].uv, grid.points[0].uv};
+    for (const FacePoint& p : grid.points) {
+      box.low = {std::min(box.low.x, p.uv.x), std::min(box.low.y, p.uv.y)};
+      box.high = {std::max(box.high.x, p.uv.x), std::max(box.high.y, p.uv.y)};
+    }
+    const std::size_t before = lowered_.points.size();
+    find_bends(*brep_.faces[f].surface, box, wanted_, lowered_);
+    report_.sizes_lowered += lowered_.points.size() - before;
+    return lowered_.points.size() > before;
+  }
+
+  /// Sizes are lowered along the face's bends first, then at the place, each third time all over the face.
   void fail(FaceId f, const std::string& why, Point at) {
     const BrepFace& face = brep_.faces[f];
     why_ =
@@ -263,9 +279,10 @@ class BrepGridder {
     why_at_ = at;
     is_border_wrong_ = grids_[f].is_border_wrong;
     has_failed_[f.index()] = true;
+    if (++failures_[f.index()] == 1 && !is_border_wrong_ && lower_along_bends(f)) return;
     lower_at(at);
     const auto& points = grids_[f].points;
-    if (++failures_[f.index()] % kAllOver == 0)
+    if (failures_[f.index()] % kAllOver == 0)
       for (std::size_t i = 0; i < points.size(); i += points.size() / kPlacesOfFace + 1) lower_at(points[i].at);
   }
 

@@ -2,15 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names from CAD come through all writers, and select faces: every format is read back by a reader that is not ours."""
 import json
-import os
 import re
 import subprocess
 import sys
 import unittest
 
 import case
-
-CAD_TOOL = os.environ.get("DELFRONT_CAD_TOOL", "")
 
 
 def cross(a, b):
@@ -142,12 +139,6 @@ def zones(path):
 
 
 class CadNames(case.Case):
-    def make(self, *words):
-        if not CAD_TOOL or not os.path.exists(CAD_TOOL):
-            self.skipTest("the module for CAD files was not built: nothing writes a file here")
-        subprocess.run([CAD_TOOL, *words], cwd=self.folder, check=True)
-        return words[-1]
-
     def expect_same(self, one, other, what):
         self.assertEqual(set(one), set(other), what)
         for name, (count, measure) in one.items():
@@ -192,7 +183,7 @@ class CadNames(case.Case):
         return {name for name, _ in zones(self.folder / "foam" / "constant" / "polyMesh" / "faceZones")}
 
     def test_an_assembly_keeps_the_names_of_faces_colours_and_parts(self):
-        vtu, _ = self.expect_names_in_all_formats(self.make("assembly", "parts.step"))
+        vtu, _ = self.expect_names_in_all_formats(self.make_cad("assembly", "parts.step"))
         areas = {"inlet": 1, "outlet": 1, "colour_FF8000": 2, "left part": 2, "right#2": 8, "left part-right#2": 1}
         self.assertEqual(set(vtu.patches), set(areas))
         for name, asked in areas.items():
@@ -201,7 +192,7 @@ class CadNames(case.Case):
         self.assertEqual(self.inner_names(), {"left_part-right_2"})
 
     def test_a_shared_file_keeps_its_names(self):
-        self.make("coloured", "a.step")  # skips where there is no module
+        self.make_cad("coloured", "a.step")  # skips where there is no module
         path = self.shared("cad/as1-oc-214.stp")
         vtu, _ = self.expect_names_in_all_formats(path, "--accuracy", "coarse")
         # of a patch with outer and inner faces the few have a name of their own
@@ -219,7 +210,7 @@ class CadNames(case.Case):
         return {group["name"]: group["num_cells"] for group in self.report("a.json")["boundaries"]}
 
     def test_faces_are_selected_by_colour(self):
-        path = self.make("coloured", "block.step")
+        path = self.make_cad("coloured", "block.step")
         self.expect(0, "mesh", self.job(path, ("hot", '{ colour = "#ff0000" }'), ("cold", '{ colour = ["00FF00", "0000FF"] }')))
         self.assertEqual(set(self.patches()), {"hot", "cold", "block"})
         self.expect(0, "info", path, says=["colour FF0000"])
@@ -231,8 +222,8 @@ class CadNames(case.Case):
         self.assertEqual(json.loads((self.folder / "a.json").read_text())["exit_code"], 2)
 
     def test_a_file_without_colours_says_so(self):
-        self.make("coloured", "block.step")
-        self.make("turn", "block.step", "plain.brep", "MM", "MM", "1", "0")
+        self.make_cad("coloured", "block.step")
+        self.make_cad("turn", "block.step", "plain.brep", "MM", "MM", "1", "0")
         self.expect(2, "mesh", self.job("plain.brep", ("hot", '{ colour = "FF0000" }')), says="the file gives its faces no colours")
 
 

@@ -49,6 +49,12 @@ class CadFiles(case.Case):
                 last = self.report("grid.json")["geometry"][0]["rounds"][-1]
                 self.assertGreater(last["min_angle_away_from_sharp_corners"]["value"], 20)
 
+    def test_a_blade_of_a_loft_is_gridded_round_its_noses(self):
+        self.expect(0, "mesh", self.make_cad("propeller", "blade.step"), "-o", "grid.vtu", "--stop-after", "surface",
+                    "--report", "grid.json")
+        last = self.report("grid.json")["geometry"][0]["rounds"][-1]
+        self.assertGreater(last["min_angle_away_from_sharp_corners"]["value"], 20)
+
     def test_lengths_in_units_need_no_more_said(self):
         path = self.needs_module()
         self.expect(0, "mesh", path, "-o", "cube.stl", "--stop-after", "surface", "--hmax", "100mm", "--report", "cube.json")

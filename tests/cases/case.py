@@ -48,6 +48,14 @@ class Case(unittest.TestCase):
         """Everything in the folder, also what temporary files would be called."""
         return sorted(str(p.relative_to(self.folder)) for p in self.folder.rglob("*"))
 
+    def make_cad(self, *words):
+        """A CAD file that OpenCASCADE makes, by the words of tests/unit/cad_files/cad_tool.cpp. @return its name"""
+        tool = os.environ.get("DELFRONT_CAD_TOOL", "")
+        if not tool or not os.path.exists(tool):
+            self.skipTest("the module for CAD files was not built: nothing writes a file here")
+        subprocess.run([tool, *words], cwd=self.folder, check=True)
+        return words[-1]
+
     def shared(self, name):
         path = SHARED / name
         if not path.exists():

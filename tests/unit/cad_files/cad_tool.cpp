@@ -3,7 +3,8 @@
 //   cad_tool turn IN OUT FROM TO SCALE DEGREES   IN has the unit FROM (MM, M, INCH, …); its coordinates times SCALE,
 //                                                turned round (1, 2, 3), are written; STEP says the unit TO
 //   cad_tool assembly OUT.step                   two named solids that share a face, some faces named, some coloured
-//   cad_tool coloured OUT.step                   a box of 1 x 2 x 3, its first four faces red, green, blue, red
+//   cad_tool propeller OUT.step                  a hub and a twisted blade by a loft through splines, whose root is in
+//   it cad_tool coloured OUT.step                   a box of 1 x 2 x 3, its first four faces red, green, blue, red
 #include <BRepBuilderAPI_Transform.hxx>
 #include <Standard_Failure.hxx>
 #include <cstdio>
@@ -44,9 +45,11 @@ void turn(const std::vector<std::string>& words) {
 void run(const std::vector<std::string>& words) {
   if (words.size() == 7 && words[0] == "turn") return turn(words);
   if (words.size() == 2 && words[0] == "assembly") return write_assembly(words[1]);
+  if (words.size() == 2 && words[0] == "propeller") return write_step(propeller(1), words[1]);
   if (words.size() == 2 && words[0] == "coloured")
     return write_coloured_box("block", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, words[1]);
-  throw std::invalid_argument("cad_tool turn IN OUT FROM TO SCALE DEGREES | assembly OUT | coloured OUT");
+  throw std::invalid_argument(
+      "cad_tool turn IN OUT FROM TO SCALE DEGREES | assembly OUT | propeller OUT | coloured OUT");
 }
 
 }  // namespace
