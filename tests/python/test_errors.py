@@ -175,6 +175,15 @@ def interrupt_soon(seconds):
     return timer
 
 
+@pytest.fixture
+def python_handler():
+    """Python's own, which it does not set up where a shell started it in the background with the signal ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("python_handler")
 @pytest.mark.parametrize("volume", ["front-delaunay", "front"])
 def test_keyboard_interrupt_stops_a_run(cube_geometry, volume):
     before = signal.getsignal(signal.SIGINT)
@@ -188,6 +197,7 @@ def test_keyboard_interrupt_stops_a_run(cube_geometry, volume):
     assert df.mesh(cube_geometry, 0.4).num_cells > 0  # and the next one works
 
 
+@pytest.mark.usefixtures("python_handler")
 def test_keyboard_interrupt_in_a_size_function(cube_geometry):
     timer = interrupt_soon(0.3)
     with pytest.raises(KeyboardInterrupt):
