@@ -328,7 +328,9 @@ class BrepGridder {
         for (const std::uint32_t f : place.ids) {
           if (f >= is_done.size() || is_done[f]) continue;
           is_done[f] = true;
-          fail(FaceId(std::size_t(f)), finding.kind, place.at);
+          fail(FaceId(std::size_t(f)),
+               finding.kind == "self_intersection" ? "its triangles cross, as the surface itself may do" : finding.kind,
+               place.at);
         }
     note_crossing(findings);
     return findings.empty();

@@ -123,7 +123,8 @@ std::string place_text(const FacePlace& place) {
   Point at = place.at;
   for (int k = 0; k < 3; ++k)  // what is next to nothing beside the rest
     if (std::abs(at[k]) < 1e-9 * (length(place.at) + place.box.diagonal())) at[k] = 0;
-  std::string text = fmt::format("area {:.4g} at ({:.4g}, {:.4g}, {:.4g}), ", place.area, at.x, at.y, at.z);
+  std::string text = place.area > 0 ? fmt::format("area {:.4g} ", place.area) : "";
+  text += fmt::format("at ({:.4g}, {:.4g}, {:.4g}), ", at.x, at.y, at.z);
   return place.normal ? text + fmt::format("looks along {}, ", direction_text(*place.normal)) : text;
 }
 
@@ -239,9 +240,12 @@ std::string geometry_text(const Brep& brep, const std::vector<FacePlace>& places
       what += cad.faces[f].surface + ", " + round_text(round_of(brep, face, cad.faces[f].surface));
     what += place_text(places[f]);
     if (f < cad.faces.size() && !cad.faces[f].colour.empty()) what += "colour " + cad.faces[f].colour + ", ";
-    text += fmt::format("face {:<9} {:<20} {}{} loop{}, {} triangles {}, angles from {:.1f} deg\n", f + 1, face.name,
-                        what, face.loops.size(), face.loops.size() == 1 ? "" : "s", made.triangles,
-                        is_quick ? "at a first look" : "of usual size", made.min_angle_deg);
+    const std::string gridded = made.triangles == 0
+                                    ? "no grid"
+                                    : fmt::format("{} triangles {}, angles from {:.1f} deg", made.triangles,
+                                                  is_quick ? "at a first look" : "of usual size", made.min_angle_deg);
+    text += fmt::format("face {:<9} {:<20} {}{} loop{}, {}\n", f + 1, face.name, what, face.loops.size(),
+                        face.loops.size() == 1 ? "" : "s", gridded);
   }
   if (brep.faces.size() > kShown)
     text += fmt::format("               and {} more faces (--json lists all)\n", brep.faces.size() - kShown);

@@ -39,6 +39,37 @@ void look_at_inputs(const std::vector<NamedMesh>& inputs, Inspected& result, Con
   result.mesh = std::make_shared<Mesh>(surface_mesh(model));  // the facts are those of the welded surface
 }
 
+/// Smooth geometry that gets no grid is told about by its edges.
+void tell_without_grid(const MeshingError& fault, Inspected& result) {
+  constexpr int kPieces = 16;
+  const std::size_t num_faces = result.brep.faces.size();
+  result.brep_grid = {};
+  result.brep_grid.faces.resize(num_faces);
+  result.face_places.resize(num_faces);
+  auto mesh = std::make_shared<Mesh>();
+  std::vector<Box> box_of_edge;
+  for (const BrepEdge& edge : result.brep.edges) {
+    Box& box = box_of_edge.emplace_back();
+    for (int i = 0; i <= kPieces && !edge.is_degenerate(); ++i) {
+      mesh->points.push_back(edge.curve->at(edge.range[0] + i * (edge.range[1] - edge.range[0]) / kPieces));
+      box.add(mesh->points[VertexId(mesh->points.size() - 1)]);
+    }
+  }
+  for (std::size_t f = 0; f < num_faces; ++f) {
+    FacePlace& place = result.face_places[f];
+    for (const auto& loop : result.brep.faces[FaceId(f)].loops)
+      for (const BrepUse& use : loop) {
+        if (result.brep.edges[use.edge].is_degenerate()) continue;
+        place.box.add(box_of_edge[use.edge.index()].low);
+        place.box.add(box_of_edge[use.edge.index()].high);
+      }
+    place.at = 0.5 * (place.box.low + place.box.high);
+  }
+  result.findings = {{"no_grid", Severity::error, 1, fault.what(), "", fault.places}};
+  result.surface.findings = result.findings;
+  result.mesh = std::move(mesh);
+}
+
 /// @param path  what errors name
 Inspected inspect_brep(Brep brep, CadReport cad, const std::string& stem, const std::string& path, Context& context) {
   Inspected result;
@@ -49,8 +80,9 @@ Inspected inspect_brep(Brep brep, CadReport cad, const std::string& stem, const 
   try {
     with_file(path, doubt_of(result.cad),
               [&] { grid = grid_to_look_at(result.brep, result.is_quick, context, result.brep_grid); });
-  } catch (const MeshingError& e) {  // nothing was asked for but whether it can be gridded
-    throw InputError(e.what(), e.places);
+  } catch (const MeshingError& e) {
+    tell_without_grid(e, result);
+    return result;
   }
   result.face_places = places_of_faces(grid, result.brep.faces.size());
   look_at_inputs({{surface_mesh(grid), stem}}, result, context);
@@ -127,7 +159,7 @@ std::string facts_text(const std::string& name, const Inspected& it) {
   std::string text = fmt::format("file           {}\n", name);
   if (!it.brep.faces.empty()) text += geometry_text(it.brep, it.face_places, it.brep_grid, it.cad, it.is_quick);
   text += mesh_facts_text(*it.mesh);
-  if (!it.is_grid && !it.is_of_lines) text += surface_facts_text(it.surface);
+  if (!it.is_grid && !it.is_of_lines && !it.mesh->blocks.empty()) text += surface_facts_text(it.surface);
   if (it.is_grid && it.is_usable())
     text += fmt::format("{:<14} {:.9g}\n", it.mesh->dimension == 2 ? "area" : "volume", it.quality.volume);
   for (const Finding& f : it.findings)
@@ -136,7 +168,8 @@ std::string facts_text(const std::string& name, const Inspected& it) {
 }
 
 std::string check_text(const Inspected& it) {
-  std::string text = it.is_grid || it.is_of_lines ? mesh_facts_text(*it.mesh) : surface_facts_text(it.surface);
+  const bool is_surface = !it.is_grid && !it.is_of_lines && !it.mesh->blocks.empty();
+  std::string text = is_surface ? surface_facts_text(it.surface) : mesh_facts_text(*it.mesh);
   if (it.findings.empty()) text += "findings       none\n";
   text += findings_text(it.findings);
   if (it.is_grid && it.is_usable()) text += quality_text(it.quality, 3);

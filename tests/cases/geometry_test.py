@@ -150,6 +150,24 @@ class SmoothGeometry(case.Case):
         names = {group["name"] for group in json.loads((self.folder / "boxes.json").read_text())["boundaries"]}
         self.assertEqual(len(names & {f"box{i}_{k}_{side}" for i in range(20) for k in "xyz" for side in ("low", "high")}), 120)
 
+    def test_info_lists_what_gets_no_grid(self):
+        sections = "".join(f"[[1,0,{z}],[0.7,0.5,{z}],[0,0,{z}],[-0.7,-0.5,{z}],[-1,0,{z}],[-0.7,0.5,{z}],[0,0,{z}],[0.7,-0.5,{z}]],"
+                           for z in (0, 1))
+        edges = "".join(f'[[edge]]\nname = "{name}"\ntype = "on"\nsurface = "eight"\nfrom = "{a}"\nto = "{b}"\nuv = {uv}\n'
+                        for name, a, b, uv in (("low", "a", "a", [[0, 0], [1, 0]]), ("high", "b", "b", [[0, 1], [1, 1]]),
+                                               ("seam", "a", "b", [[0, 0], [0, 1]])))
+        self.write("eight.geom.toml",
+                   '[[corner]]\nname = "a"\nat = [1, 0, 0]\n[[corner]]\nname = "b"\nat = [1, 0, 1]\n[[surface]]\nname = "eight"\n'
+                   f'type = "interpolated"\nclosed = true\ndegree_across = 1\nsections = [{sections}]\n{edges}'
+                   '[[face]]\nname = "skin"\nsurface = "eight"\nloops = [["low", "seam", "-high", "-seam"]]\n')
+        for command in ("info", "check"):
+            result = self.expect(3, command, "eight.geom.toml", "--json", "eight.json")
+            self.assertIn("'skin': its triangles cross", case.unbroken(result.stdout))
+            facts = json.loads((self.folder / "eight.json").read_text())
+            self.assertEqual([edge["name"] for edge in facts["geometry"]["edges"]], ["low", "high", "seam"])
+            self.assertEqual([face["name"] for face in facts["geometry"]["faces"]], ["skin"])
+            self.assertEqual(facts["surface"]["findings"][0]["kind"], "no_grid")
+
     def test_info_says_where_faces_are(self):
         """What it says of a face selects that face."""
         self.write("part.geom.toml", '[[shape]]\ntype = "box"\nmin = [0, 0, 0]\nmax = [4, 2, 1]\n'
