@@ -95,6 +95,7 @@ class ViewCommand : public Command {
   std::string make_data(bool is_compact, Context& context) const {
     const Inspected it = inspect_file(file_, format_, context);
     std::vector<Finding> findings = it.findings;
+    if (it.mesh->blocks.empty() && !findings.empty()) throw InputError(findings[0].message, findings[0].places);
     if (!defects_.empty()) findings = read_defects(defects_, context);
     const std::filesystem::path path(file_);
     const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();

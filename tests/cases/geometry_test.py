@@ -167,6 +167,8 @@ class SmoothGeometry(case.Case):
             self.assertEqual([edge["name"] for edge in facts["geometry"]["edges"]], ["low", "high", "seam"])
             self.assertEqual([face["name"] for face in facts["geometry"]["faces"]], ["skin"])
             self.assertEqual(facts["surface"]["findings"][0]["kind"], "no_grid")
+        self.expect(3, "view", "eight.geom.toml", "--export", "eight.html")
+        self.assertFalse((self.folder / "eight.html").exists())
 
     def test_info_says_where_faces_are(self):
         """What it says of a face selects that face."""
