@@ -355,6 +355,43 @@ class Formats(unittest.TestCase):
                     self.assertIn("a.cgns", said)
                     self.assertNotIn("crash", said)
 
+    def test_cgns_files_that_lack_something_are_refused_or_it_is_said(self):
+        cgns_files = self.cgns_files()
+
+        def without(name):
+            return lambda file: file.__delitem__(f"Base/Zone/{name}")
+
+        def changed(name, values):
+            def change(file):
+                file[f"Base/{name}/ data"][...] = np.array(values, "i4").reshape(file[f"Base/{name}/ data"].shape)
+            return change
+
+        for change, status, says in (
+                (without("GridCoordinates"), 3, "no CoordinateX"), (without("GridCoordinates/CoordinateZ"), 3, "no CoordinateZ"),
+                (changed("Zone/Volume/ElementRange", [9, 10]), 3, "numbers are left"),
+                (changed("Zone/Volume/ElementRange", [9, 8]), 3, "numbers are left"),
+                (changed("Zone/ZoneBC/top/PointList", [100, 101, 102, 103]), 0, "condition top: none"),
+                (changed("Zone/ZoneBC/top/PointList", [1, 101, 102, 103]), 0, "condition top: only 1"),
+                (changed("Zone/ZoneBC/top/PointList", [5, 6, 7, 8]), 0, "4 faces are in several conditions")):
+            with self.subTest(says):
+                cgns_files.write(self.folder / "a.cgns")
+                with h5py.File(self.folder / "a.cgns", "a") as file:
+                    change(file)
+                result, said = run(DELFRONT, "convert", self.folder / "a.cgns", self.folder / "back.msh")
+                self.assertEqual(result, status, said)
+                self.assertIn(says, " ".join(said.split()))
+
+    def test_a_cgns_file_of_a_later_version_needs_a_folder_for_its_copy(self):
+        cgns_files = self.cgns_files()
+        cgns_files.write(self.folder / "a.cgns", version=4.2)
+        kept = self.folder / "delfront_XXXXXX"
+        kept.write_text("mine")
+        result = subprocess.run([DELFRONT, "convert", "a.cgns", "b.msh"], cwd=self.folder, capture_output=True, text=True,
+                                env={**os.environ, "TMPDIR": str(self.folder / "nowhere")})
+        self.assertEqual(result.returncode, 7, result.stderr)
+        self.assertIn("TMPDIR", result.stderr)
+        self.assertEqual(kept.read_text(), "mine")
+
     def test_cgnscheck_finds_nothing(self):
         if not shutil.which("cgnscheck"):
             self.skipTest("cgnscheck is not installed (Debian cgns-convert)")

@@ -46,25 +46,28 @@ OlderVersion::OlderVersion(const std::string& path, Context& context) : path_(pa
   if (!(version >= static_cast<float>(CGNS_VERSION / 1000 + 1))) return;
   context.log(LogLevel::debug, fmt::format("{}: of CGNS {:.2f}, read as {:.2f}", path, version, kKnown));
   std::error_code error;
-  copy_ = (std::filesystem::temp_directory_path(error) / "delfront_XXXXXX").string();
-  const int made = error ? -1 : ::mkstemp(copy_.data());
-  if (made >= 0) ::close(made);
-  // Onto the file just made, whose rights are ours alone.
-  std::ifstream source(path, std::ios::binary);
-  std::ofstream target(copy_, std::ios::binary);
-  target << source.rdbuf();
-  target.close();
-  if (made >= 0 && source && target && set_version(copy_)) return;
-  std::filesystem::remove(copy_, error);
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  std::string name = (folder / "delfront_XXXXXX").string();
+  const int made = error ? -1 : ::mkstemp(name.data());
+  if (made >= 0) {
+    ::close(made);
+    path_ = copy_ = name;
+    std::ifstream source(path, std::ios::binary);
+    std::ofstream target(copy_, std::ios::binary);  // onto the file just made, whose rights are ours alone
+    target << source.rdbuf();
+    target.close();
+    if (source && target && set_version(copy_)) return;
+    remove();
+  }
   throw IoError(
-      fmt::format("{}: of CGNS {:.2f}, of which a copy is read, and the copy {} cannot be made; is the disk full? "
-                  "TMPDIR names another folder",
-                  path, version, copy_));
+      fmt::format("{}: of CGNS {:.2f}, of which a copy is read, and none can be made in {}; is the disk full? TMPDIR "
+                  "names another folder",
+                  path, version, folder.empty() ? "the folder of temporary files" : folder.string()));
 }
 
-OlderVersion::~OlderVersion() {
-  std::error_code error;
-  if (!copy_.empty()) std::filesystem::remove(copy_, error);
+void OlderVersion::remove() {
+  if (!copy_.empty()) ::unlink(copy_.c_str());
+  copy_.clear();
 }
 
 }  // namespace delfront

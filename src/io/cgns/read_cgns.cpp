@@ -60,10 +60,14 @@ class CgnsReader {
     mesh_.dimension = 3;
     base_name_ = name.data();
     cell_dimension_ = cell_dimension;
+    space_ = space;
     file_.check(cg_nzones(fn(), kBase, &num_zones), "the number of zones");
     read_families();
     for (int zone = 1; zone <= num_zones; ++zone) read_zone(zone, num_zones);
     if (mesh_.top_dimension() < 0) throw InputError(fmt::format("{}: the CGNS file has no elements", path_));
+    if (num_shared_ > 0)
+      context_.warn(
+          fmt::format("{}: {} faces are in several conditions; they get the last one's patch", path_, num_shared_));
     check_finite(mesh_, path_);
     set_plane(space);
     mark_inner_groups(mesh_);
@@ -158,6 +162,7 @@ class CgnsReader {
     int num_coordinates = 0;
     file_.check(cg_ncoords(fn(), kBase, zone, &num_coordinates), "the number of coordinates");
     std::vector<double> values(n);
+    std::array<bool, 3> is_there{};
     for (int c = 1; c <= num_coordinates; ++c) {
       Name name{};
       DataType_t type = DataTypeNull;
@@ -165,12 +170,16 @@ class CgnsReader {
       const std::string_view known(name.data());
       const int axis = known == "CoordinateX" ? 0 : known == "CoordinateY" ? 1 : known == "CoordinateZ" ? 2 : -1;
       if (axis < 0) fail("zone " + zone_name_, fmt::format("coordinates '{}' are not read; export x, y, z", known));
+      is_there[static_cast<std::size_t>(axis)] = true;
       const cgsize_t low = 1, high = static_cast<cgsize_t>(n);
       if (n == 0) continue;
       file_.check(cg_coord_read(fn(), kBase, zone, name.data(), RealDouble, &low, &high, values.data()),
                   "the coordinates");
       for (std::size_t i = 0; i < n; ++i) points[i][axis] = values[i];
     }
+    for (int axis = 0; axis < (cell_dimension_ == 2 ? 2 : space_) && n > 0; ++axis)
+      if (!is_there[static_cast<std::size_t>(axis)])
+        fail("zone " + zone_name_, fmt::format("it has no Coordinate{}; the file is damaged", "XYZ"[axis]));
     std::vector<VertexId> vertices;
     const auto first_of_zone = mesh_.points.size();
     for (const Point& p : points) {
@@ -244,6 +253,9 @@ class CgnsReader {
       if (!cell)
         fail(where, fmt::format("element {} is of type {}, which is not read; export linear ones, no polyhedra",
                                 element, cg_ElementTypeName(type)));
+      if (dimension(*cell) > cell_dimension_)
+        fail(where,
+             fmt::format("element {} is a {} in a base of dimension {}", element, name_of(*cell), cell_dimension_));
       const auto num = static_cast<std::size_t>(num_vertices(*cell));
       if (numbers.size() - at < num) fail(where, "it ends within its elements; the file is damaged");
       Element added;
@@ -258,6 +270,8 @@ class CgnsReader {
       }
       elements_.push_back(added);
     }
+    if (at != numbers.size())
+      fail(where, fmt::format("{} numbers are left when its elements end; the file is damaged", numbers.size() - at));
   }
 
   /// By number; sections need not stand in that order.
@@ -297,9 +311,10 @@ class CgnsReader {
       file_.check(cg_boco_gridlocation_read(fn(), kBase, zone, number, &location), "the location of a condition");
       if (num_points < 0 || static_cast<std::uint64_t>(num_points) > 1000 * file_size_)
         fail(fmt::format("condition {}", name.data()), fmt::format("{} numbers; the file is damaged", num_points));
-      const std::uint64_t num_stored =
-          file_.num_values({base_name_, zone_name_, "ZoneBC_t", name.data(), cg_PointSetTypeName(set)});
-      if (num_stored > static_cast<std::uint64_t>(num_points))
+      std::uint64_t num_stored = 0;  // the library reads lists of elements as lists of points
+      for (const char* const list : {"PointList", "PointRange", "ElementList", "ElementRange"})
+        num_stored += file_.num_values({base_name_, zone_name_, "ZoneBC_t", name.data(), list});
+      if (num_stored != static_cast<std::uint64_t>(num_points))
         fail(fmt::format("condition {}", name.data()),
              fmt::format("{} numbers where there should be {}; the file is damaged", num_stored, num_points));
       std::vector<cgsize_t> numbers(static_cast<std::size_t>(num_points));
@@ -316,34 +331,45 @@ class CgnsReader {
       }
       const bool is_range = set == PointRange || set == ElementRange;
       const bool on_vertices = location == Vertex && (set == PointRange || set == PointList);
-      on_vertices ? take_vertices(numbers, is_range, vertices, patch(group, kind))
-                  : take_elements_of(numbers, is_range, group, kind);
+      if (is_range && numbers.size() != 2)
+        fail(fmt::format("condition {}", name.data()), fmt::format("a range of {} numbers", numbers.size()));
+      const std::size_t num_taken = on_vertices ? take_vertices(numbers, is_range, vertices, patch(group, kind))
+                                                : take_elements_of(numbers, is_range, group, kind);
+      const std::size_t num_named = is_range || on_vertices ? std::min<std::size_t>(num_taken, 1) : numbers.size();
+      if (num_taken == 0 || num_taken < num_named)
+        context_.warn(fmt::format("{}: condition {}: {} of what it lists are faces or cells of the file", path_,
+                                  name.data(), num_taken == 0 ? "none" : fmt::format("only {}", num_taken)));
     }
   }
 
   /// Faces become the patch; cells, which some programs give conditions too, the region of that name.
-  void take_elements_of(const std::vector<cgsize_t>& numbers, bool is_range, const std::string& name,
-                        const std::string& kind) {
+  /// @return how many
+  std::size_t take_elements_of(const std::vector<cgsize_t>& numbers, bool is_range, const std::string& name,
+                               const std::string& kind) {
     GroupId face_group, cell_group;
+    std::size_t num_taken = 0;
     const auto take = [&](Element& element) {
       const int d = dimension(element.type);
       if (d < cell_dimension_ - 1) return;
       GroupId& group = d == cell_dimension_ ? cell_group : face_group;
       if (!group.is_valid()) group = d == cell_dimension_ ? mesh_.add_group(d, name) : patch(name, kind);
+      num_shared_ += element.group.is_valid() && element.group != group;
       element.group = group;
+      ++num_taken;
     };
     if (!is_range) {
       for (const cgsize_t number : numbers)
         if (Element* element = find_element(number)) take(*element);
-    } else if (numbers.size() == 2) {
+    } else {
       for (Element& element : elements_)
         if (element.number >= numbers[0] && element.number <= numbers[1]) take(element);
     }
+    return num_taken;
   }
 
-  /// Faces with all corners among the vertices of the condition.
-  void take_vertices(const std::vector<cgsize_t>& numbers, bool is_range, const std::vector<VertexId>& vertices,
-                     GroupId group) {
+  /// Faces with all corners among the vertices of the condition. @return how many
+  std::size_t take_vertices(const std::vector<cgsize_t>& numbers, bool is_range, const std::vector<VertexId>& vertices,
+                            GroupId group) {
     std::vector<bool> is_on(mesh_.points.size(), false);
     const auto take = [&](cgsize_t number) {
       if (number >= 1 && static_cast<std::size_t>(number) <= vertices.size())
@@ -351,17 +377,21 @@ class CgnsReader {
     };
     if (!is_range)
       std::for_each(numbers.begin(), numbers.end(), take);
-    else if (numbers.size() == 2)
+    else
       for (cgsize_t v = std::max<cgsize_t>(numbers[0], 1);
            v <= numbers[1] && static_cast<std::size_t>(v) <= vertices.size(); ++v)
         take(v);
+    std::size_t num_taken = 0;
     for (Element& element : elements_) {
       if (dimension(element.type) != cell_dimension_ - 1 || element.group.is_valid()) continue;
       bool all = true;
       for (int k = 0; k < num_vertices(element.type); ++k)
         all = all && is_on[element.corners[static_cast<std::size_t>(k)].index()];
-      if (all) element.group = group;
+      if (!all) continue;
+      element.group = group;
+      ++num_taken;
     }
+    return num_taken;
   }
 
   void add_cells(const std::string& zone_region) {
@@ -399,7 +429,8 @@ class CgnsReader {
   std::uint64_t file_size_;
   Context& context_;
   Mesh mesh_;
-  int cell_dimension_ = 3;
+  int cell_dimension_ = 3, space_ = 3;
+  std::size_t num_shared_ = 0;                                        ///< elements that several conditions list
   std::map<std::string, std::string> kind_of_family_, outer_family_;  // Gmsh puts entities into families of families
   std::vector<Element> elements_;                                     // of the zone, by number
   std::vector<std::string> section_names_, region_of_section_;
@@ -415,8 +446,9 @@ Mesh read_cgns(const std::string& path, Context& context) {
   if (size == 0) throw InputError(fmt::format("{}: the file is empty; export it again", path));
   const Hdf5Turn turn;
   const LibraryReading reading(path, context);
-  const OlderVersion readable(path, context);
+  OlderVersion readable(path, context);
   CgnsFile file(readable.path(), CG_MODE_READ, path);
+  readable.remove();
   return CgnsReader(file, path, size, context).read();
 }
 
